@@ -45,9 +45,9 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
                 push(w, slope)
             exact, difference = rates(w), forward_difference(w)
             errors = np.abs(exact - difference) / (1 + np.abs(exact))
-            within(dict(zip(outputs(w), errors, strict=True)), 2e-7, "error")
+            within(dict(zip(outputs(w), errors, strict=True)), 2e-7, "rate off the difference, relative")
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
-        beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-7, "rates")
+        beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-7, "rate under another slope, relative")
         w.back(blob)
 
 
@@ -75,39 +75,39 @@ def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
         checked.append((jacobian(w.to(t)), difference_jacobian(w)))
     for exact, difference in checked:
         errors = dict(zip(outputs(w), np.abs(exact - difference).max(axis=1), strict=True))
-        within(errors, 64 * 200 * EPSILON, "difference")  # of reactions of 200 N
+        within(errors, 64 * 200 * EPSILON, "derivative off the difference")  # of reactions of 200 N
         answers = np.any(difference != 0, axis=1)  # whatever its name: no output is left out
         assert np.all(exact[~answers] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= 3
-    beyond(np.max(np.abs(checked[0][0] - checked[-1][1])), 0.07, "checked")  # the partner: another instant
+    beyond(np.max(np.abs(checked[0][0] - checked[-1][1])), 0.07, "derivatives at two instants apart")
 
 
 def test_while_friction_holds_the_wheel_the_derivatives_are_those_of_a_held_wheel(wheel):
     w = wheel().start(s=0.03).by(1.26)
     assert w.get("friction_mode") == [0]
-    within(np.max(np.abs(jacobian(w) - difference_jacobian(w, 1e-3))), 1e-10, "jacobian")
+    within(np.max(np.abs(jacobian(w) - difference_jacobian(w, 1e-3))), 1e-10, "derivatives of the held wheel")
     rolling = wheel().back(w.serialized())
     for s in (0.0, 0.001):  # the partners: friction that was just set holds no moment, or less than acts
-        within(np.max(np.abs(jacobian(rolling.put(s=s)) - difference_jacobian(rolling, 1e-3))), 1e-10, "jacobian")
-        beyond(np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "jacobian")
+        within(np.max(np.abs(jacobian(rolling.put(s=s)) - difference_jacobian(rolling, 1e-3))), 1e-10, "derivatives")
+        beyond(np.max(np.abs(jacobian(w) - jacobian(rolling))), 0.1, "derivatives of the two wheels apart")
 
 
 def test_at_rest_without_friction_nothing_holds_the_wheel(wheel):
     w = wheel().start(**AT_REST)
     free = jacobian(w)
-    within(np.max(np.abs(free - difference_jacobian(w))), 64 * 200 * EPSILON, "jacobian")
+    within(np.max(np.abs(free - difference_jacobian(w))), 16 * 200 * EPSILON, "derivatives of the free wheel")
     held = wheel().start(s=0.03, **AT_REST)
-    beyond(np.max(np.abs(free - jacobian(held))), 0.1, "jacobian")
+    beyond(np.max(np.abs(free - jacobian(held))), 0.1, "derivatives of the held wheel")
 
 
 def test_directional_derivatives_add_up_the_seeds(wheel):
     w = wheel().start()
     unknowns, knowns, seeds = w.refer(*outputs(w)), w.refer(*INPUTS), [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
     together = np.array(w.getDirectionalDerivative(unknowns, knowns, seeds))
-    within(np.max(np.abs(together - jacobian(w) @ seeds)), 32 * 20 * EPSILON, "jacobian")  # seeds of 20 in all
+    within(np.max(np.abs(together - jacobian(w) @ seeds)), 32 * 20 * EPSILON, "derivative along seeds of 20 in all")
     twice = np.array(w.getDirectionalDerivative(unknowns[::-1], [knowns[0]] * 2, [1.0, 2.0]))
-    within(np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])), 16 * EPSILON, "jacobian, 2")
-    beyond(np.max(np.abs(together - jacobian(w) @ seeds[::-1])), 1, "jacobian")
+    within(np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])), 16 * EPSILON, "derivative along two seeds of one input")
+    beyond(np.max(np.abs(together - jacobian(w) @ seeds[::-1])), 1, "derivative along other seeds")
 
 
 @pytest.mark.parametrize("share", [0.5, 3e-3, 1.5e-3, 1e-4, 1e-6])
@@ -122,7 +122,7 @@ def test_the_friction_that_is_required_next_to_lift_off_has_the_derivative_of_it
     (X, Y, N), mu = w.get(*forces), w.get("mu_required")[0]
     expected = (X * slopes[0] + Y * slopes[1]) / np.hypot(X, Y) / N - mu / N * slopes[2]
     got = w.jacobian(["mu_required", *forces], ["F_Z"])[:, 0]
-    within(abs(got[0] / expected - 1), 1e-11 / share, "derivative, relative")
+    within(abs(got[0] / expected - 1), 1e-11, "derivative of mu_required, relative")
     within(np.abs(got[1:] - slopes).max(), 1e-11, "derivatives of the force")
     beyond(abs(mu / N / expected), 0.5, "the part of N")
 
@@ -156,8 +156,8 @@ def test_at_an_ending_the_rates_count_the_slope_that_led_there(wheel):
 
     h = 1e-3
     backward = (3 * lifted.get("lambda_3")[0] - 4 * normal_force(end - h) + normal_force(end - 2 * h)) / (2 * h)
-    within(abs(rate - backward), 0.01, "rate")  # N/s, of -933
-    beyond(abs(rate + slope - backward), 80, "backward")  # the partner: a rate that leaves the slope out
+    within(abs(rate - backward), 0.01, "rate of N, N/s")  # of -933
+    beyond(abs(rate + slope - backward), 80, "rate of N without the slope, N/s")
     assert lifted.step(0.1) == ERROR
 
 
@@ -204,10 +204,10 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
             assert exact == 0  # without mu_slide there is no start with slip
             continue
         difference, size = difference_upwards(w, unknown, known), 1 + abs(exact)
-        within({f"d {unknown} / d {known}": abs(exact - difference) / size}, 2e-5, "relative error")
+        within({f"d {unknown} / d {known}": abs(exact - difference) / size}, 2e-5, "off the difference, relative")
         assert w.getDirectionalDerivative(w.refer(unknown), w.refer(known), [-2.0]) == [-2 * exact]
         moved, off = moved + (abs(exact) > 1e-6), max(off, abs(1.01 * exact - difference) / size)
-    beyond(off, 2e-5, "relative error")
+    beyond(off, 2e-5, "derivatives 1 % larger, relative")
     assert moved > 60
     assert w.messages == []
 
@@ -219,9 +219,9 @@ def test_the_step_of_a_derivative_by_a_small_parameter_is_small_against_it(wheel
     x, law = 0.7, {"friction_law": "regularized", "omega_s": omega_s, "s": 0.03}
     w = wheel().initializing(theta_start=np.pi / 2, phi_dot_start=x * omega_s, **law)
     slope = 0.03 * 20 * 9.81 * x / omega_s / np.cosh(x) ** 2
-    within(abs(abs(w.jacobian(["tau"], ["omega_s"])[0, 0]) / slope - 1), 1e-9, "relative error")
+    within(abs(abs(w.jacobian(["tau"], ["omega_s"])[0, 0]) / slope - 1), 1e-10, "derivative by omega_s, relative")
     ends = [w.put(omega_s=omega_s * part).get("tau")[0] for part in (1.1, 0.9)]
-    beyond(abs(abs(ends[0] - ends[1]) / (0.2 * omega_s * slope) - 1), 1e-4, "relative error over a tenth of omega_s")
+    beyond(abs(abs(ends[0] - ends[1]) / (0.2 * omega_s * slope) - 1), 1e-4, "slope over a tenth of omega_s, relative")
 
 
 def test_a_parameter_that_cannot_change_has_no_derivative(wheel):
@@ -256,14 +256,14 @@ def test_the_brakes_moment_on_a_held_wheel_has_the_derivatives_of_its_share(whee
     tau, capacity = -torque, brake + rolling
     want = np.array([tau * rolling / capacity**2, -brake / capacity, tau * brake * 0.02 / capacity**2])  # F_Z lifts
     (found,) = w.jacobian(["tau_brake"], ["M_brake", "M_3", "F_Z"])
-    within(np.abs(found / want - 1).max(), 1e-10, "derivatives, relative")
-    beyond(abs(w.jacobian(["tau"], ["M_3"])[0, 0] / want[1] - 1), 0.05, "that of both, relative")
+    within(np.abs(found / want - 1).max(), 4096 * EPSILON, "derivatives of the brake's moment, relative")
+    beyond(abs(w.jacobian(["tau"], ["M_3"])[0, 0] / want[1] - 1), 0.05, "derivative of both moments, relative")
 
 
 def test_a_brake_about_to_be_put_on_has_the_derivative_of_its_capacity(wheel):
     for s in (0.0, 0.02):
         w = wheel().start(theta_start=np.pi / 2, phi_dot_start=-5.0, s=s).to(0.01)
-        within(abs(w.jacobian(["tau_brake"], ["M_brake"])[0, 0] - 1), 1e-10, "derivative")
+        within(abs(w.jacobian(["tau_brake"], ["M_brake"])[0, 0] - 1), 64 * EPSILON, "derivative by the brake, off 1")
         assert w.get("tau_brake") == [0]
 
 
@@ -306,8 +306,8 @@ def test_derivatives_are_quotients_of_the_outputs_where_the_loads_decide_how_a_s
     assert w.get("contact_mode") == [0]
     w.put(M_3=-80.0, M_1=2.0)
     assert w.get("contact_mode") == [1] and w.get("slip_x", "slip_y") != [0.0, 0.0]
-    within(furthest(w), 1e-5, "error")
-    beyond(furthest(w, 20.0), 1e-5, "error of coarse quotients")
+    within(furthest(w), 1e-9, "derivatives off the quotients, relative")
+    beyond(furthest(w, 20.0), 1e-5, "derivatives off coarse quotients, relative")
 
 
 CHANGES = {name: KINDS[name] for name in ("friction", "multibody", "sliding")}
@@ -324,4 +324,4 @@ def test_derivatives_are_quotients_of_the_outputs_at_the_instant_of_every_transi
     assert found
     for t in sorted(found)[:8]:
         for near in (t - 2e-9, t, t + 2e-9):
-            within(furthest(wheel().start(**CHANGES[scene]).to(near)), 1e-5, "error")
+            within(furthest(wheel().start(**CHANGES[scene]).to(near)), 1e-5, "derivatives off the quotients, relative")

@@ -82,7 +82,7 @@ def test_every_start_value_of_the_description_is_what_the_library_starts_with(wh
         start = {"true": 1, "false": 0}.get(v.start) if v.type == "Boolean" else float(v.start)
         assert w.get_one(name) == (OK, start), name
         off[name] = abs(start - STARTS.get(name, start))
-    within(off, 8 * EPSILON, "difference")
+    within(off, 8 * EPSILON, "start value")
     assert w.put(m=20.000000000000004).get("m") != [20.0]  # the partner: one unit in the last place
 
 
@@ -112,8 +112,8 @@ def test_every_unit_is_defined_by_base_units_and_used(description):
     newton = {"kg": 1, "m": 1, "s": -2, "factor": 1.0}
     assert all(of.values()) and of["N"] == newton and of["J"] == newton | {"m": 2} == of["N.m"]
     (degree,) = next(u.displayUnits for u in description.unitDefinitions if u.name == "rad")
-    within(abs(degree.factor * FULL_TURN - 360), 2 * 360 * EPSILON, "full turn, degrees")  # 16 digits of 180/pi
-    beyond(abs(57.295779513 * FULL_TURN - 360), 4e-11, "full turn, degrees")
+    within(abs(degree.factor * FULL_TURN - 360), 2 * 360 * EPSILON, "full turn off 360, degrees")  # 16 digits of 180/pi
+    beyond(abs(57.295779513 * FULL_TURN - 360), 4e-11, "full turn by a rounded factor off 360, degrees")
 
 
 def test_choices_are_integers_with_limits_and_their_meanings(description, xml):

@@ -51,7 +51,7 @@ def test_a_smooth_input_is_followed_with_the_order_of_its_derivatives(upright, o
     """Halving the step divides the error by 2^(order + 1)."""
     ends = [follow(upright(), sine, np.linspace(0, 2, steps + 1), order) for steps in (64, 128)]
     errors = np.abs(np.array(ends) - (1 - np.cos(4)) / 2)
-    within(abs(np.log2(errors[0] / errors[1]) - (order + 1)), 0.1, "order")
+    within(abs(np.log2(errors[0] / errors[1]) - (order + 1)), 0.1, "order of convergence off order + 1")
 
 
 def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(upright):
@@ -66,11 +66,11 @@ def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(upri
     w = upright().give({"M_3": (1.0, 2.0)})
     assert (w.get("M_3"), w.by(0.5).get("M_3")) == ([1.0], [2.0])
     reached = w.get("omega_z")[0]
-    within(abs(reached - (0.5 + 0.25) / INERTIA), 64 * EPSILON, "omega_z reached")
+    within(abs(reached - (0.5 + 0.25) / INERTIA), 8 * EPSILON, "omega_z reached, rad/s")
     assert w.by(0.5).get("M_3") == [2.0]
     gained = w.get("omega_z")[0] - reached
-    within(abs(gained - 0.5 * 2.0 / INERTIA), 64 * EPSILON, "omega_z gained")
-    beyond(abs(gained - 0.5 * 1.0 / INERTIA), 0.01, "omega_z gained from the first value")
+    within(abs(gained - 0.5 * 2.0 / INERTIA), 16 * EPSILON, "omega_z gained, rad/s")
+    beyond(abs(gained - 0.5 * 1.0 / INERTIA), 0.01, "omega_z gained from the first value, rad/s")
     blob = w.give({"M_3": (1.0, 4.0), "F_X": (4.0,)}).by(0.5).serialized()
     assert w.put(M_3=7.0).get("M_3", "F_X") == [7.0, 4.0]
     assert w.back(blob).get("M_3", "F_X") == [3.0, 4.0]
@@ -81,7 +81,7 @@ def test_an_input_rewritten_at_its_old_value_after_a_step_with_derivatives_jumps
     w = upright()
     for _ in range(4):
         w.give({"M_3": (1.0, 2.0)}).by(0.5)
-    within(abs(w.get("omega_z")[0] - 4 * (0.5 + 0.25) / INERTIA), 64 * EPSILON, "omega_z")
+    within(abs(w.get("omega_z")[0] - 4 * (0.5 + 0.25) / INERTIA), 64 * EPSILON, "omega_z, rad/s")
     assert w.get("n_restarts") == [3]  # the first value is that of the start
 
 
@@ -93,8 +93,8 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
     w.put(F_X=1.0, F_Y=-2.0, F_Z=3.0, M_1=0.5, M_2=0.4, M_3=-0.3)
     at_once = np.array(w.get("lambda_1", "lambda_2", "lambda_3"))
     assert w.read(motion) == before
-    within(np.max(np.abs(at_once - w.by(1e-9).get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "lambda_1")  # N
-    beyond(np.min(np.abs(at_once - reactions)), 0.06, "at once")
+    within(np.max(np.abs(at_once - w.by(1e-9).get("lambda_1", "lambda_2", "lambda_3"))), 2e-6, "reactions, N")
+    beyond(np.min(np.abs(at_once - reactions)), 0.06, "change by the inputs, N")
     assert w.read(motion) != before
 
 
@@ -106,14 +106,14 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
     for torque in (0.999 * limit, -0.999 * limit, 0.0):
         assert standing.put(M_3=torque).by(0.5).get("friction_mode") == [0]
         assert standing.get("omega_z") == [0]
-        within(abs(standing.get("X_O_dot")[0]), 128 * EPSILON, "X_O_dot")  # m/s: theta starts off 90 deg by rounding
+        within(abs(standing.get("X_O_dot")[0]), 128 * EPSILON, "velocity, m/s")  # theta starts off 90 deg by rounding
     t = standing.time
     standing.give({"M_3": (0.0, 2.0)}).by(4.0)
     release = float(standing.take_messages()[-1].text.split(" ")[2])
-    within(abs(release - t - limit / 2), 1e-8, "release")  # s; the log gives nine decimals
+    assert release == round(t + limit / 2, 9)  # logged to the nanosecond
     spin = 2 * (4.0 - limit / 2) ** 2 / 2 / INERTIA
-    within(abs(standing.get("omega_z")[0] - spin), 64 * EPSILON, "omega_z")  # rad/s
-    beyond(abs(standing.get("omega_z")[0] - 2 * 4.0**2 / 2 / INERTIA), 0.2, "omega_z")
+    within(abs(standing.get("omega_z")[0] - spin), 64 * EPSILON, "omega_z, rad/s")
+    beyond(abs(standing.get("omega_z")[0] - 2 * 4.0**2 / 2 / INERTIA), 0.2, "omega_z without the friction, rad/s")
 
 
 def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
@@ -122,9 +122,9 @@ def test_a_held_wheel_stays_held_when_an_input_changes(wheel):
         w = wheel().start(s=0.03, formulation=formulation).by(1.26)
         assert w.get("friction_mode") == [0]  # stick lasts from 1.2255 s to 1.3298 s
         assert w.put(M_3=0.1).get("friction_mode") == w.by(0.001).get("friction_mode") == [0]
-        within(abs(w.get("omega_z")[0]), 64 * EPSILON, "omega_z")
+        within(abs(w.get("omega_z")[0]), 64 * EPSILON, "omega_z, rad/s")
         assert w.put(M_3=50.0).get("friction_mode") == [1]
-        beyond(w.by(0.001).get("omega_z")[0], 1e-3, "omega_z")
+        beyond(w.by(0.001).get("omega_z")[0], 1e-3, "omega_z of the released wheel, rad/s")
 
 
 def ramp_and_hold(w: FMU2Wheel, h: float) -> tuple[float, int]:
@@ -163,7 +163,7 @@ def test_an_input_may_change_again_after_a_step_of_single_roundings(wheel, value
         w, once = (wheel().start(**values).by(1.0) for _ in range(2))
         w.put(M_3=0.5).by(roundings * np.spacing(1.0))
         ends = [instance.put(M_3=0.7).to(1.5).get("phi") for instance in (w, once)]
-        within(absolute_error(*ends), 1e-8, "phi")
+        within(absolute_error(*ends), 1e-8, "phi apart, rad")
 
 
 def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):

@@ -64,7 +64,7 @@ def test_each_fault_is_reported_and_after_a_reset_and_a_correction_the_wheel_run
 def test_a_weight_that_moves_nothing_is_none(wheel, s):
     """The time scale sqrt((r_0 + r) / g) of a wheel in motion is no measure of it where g is next to nothing."""
     places = [wheel().start(g=g, s=s).by(5.0).get("X_O", "theta", "psi", "phi") for g in (0.0, 1e-300)]
-    within(absolute_error(*places), 64 * EPSILON, "places")
+    within(absolute_error(*places), 64 * EPSILON, "places apart, m, rad")
 
 
 @pytest.mark.parametrize("most", ["psi_dot_start", "theta_dot_start", "phi_dot_start"])

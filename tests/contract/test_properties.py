@@ -66,7 +66,7 @@ def test_energy_changes_by_the_work_of_inputs_and_friction(wheel, forgotten):
         counted = {**scene, **load}
         if broken:  # the partner: a hundredth of a newton, or a millimetre of s, is left out
             counted[forgotten] += 0.01 if forgotten in INPUTS else 0.001
-        within(energy_defect(w, counted), BOUND, "energy defect")
+        within(energy_defect(w, counted), BOUND, "energy off the work, relative")
 
     with pytest.raises(AssertionError) if broken else nullcontext():
         check()

@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import DISCARD, ERROR, OK, FMU2Wheel
 from support.sliding import HUB, ROAD, UPRIGHT
 
@@ -20,14 +20,14 @@ def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> Non
     before = w.get("X_O_dot")[0]
     w.put(mu_slide=0.25)
     assert w.get("mu_slide", "mu_max") == [0.25, 0.45]
-    within(abs(w.get("lambda_x")[0] + 0.25 * WEIGHT), 1e-10, "force read before the step, N")
+    within(abs(w.get("lambda_x")[0] + 0.25 * WEIGHT), 16 * WEIGHT * EPSILON, "force read before the step, N")
     restored.back(w.serialized())
     ends = [each.to(0.4).bits() for each in (w, restored)]
     assert ends[0] == ends[1]
-    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.2), 1e-9, "velocity, m/s")
+    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.2), 1024 * 7 * EPSILON, "velocity, m/s")
     in_force = wheel().back(w.serialized())
     assert in_force.to(0.6).bits() == w.to(0.6).bits()
-    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1e-9, "velocity later, m/s")
+    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1024 * 7 * EPSILON, "velocity later, m/s")
 
 
 def test_another_limit_after_a_reset_is_that_of_the_next_run(wheel) -> None:
@@ -49,7 +49,7 @@ def test_every_message_of_a_slide_has_the_callers_time_and_its_own_number(wheel,
         return [float(sentence.split()[2]) for sentence in one.sentences if "slid" in sentence]
 
     assert len(moments(early)) == 4
-    within(absolute_error(np.array(moments(w)) - start, moments(early)), 1e-6, "instants apart, s")
+    within(absolute_error(np.array(moments(w)) - start, moments(early)), 16 * 100 * EPSILON, "instants apart, s")
     jam = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
     jammed = wheel().start(start=start, **jam, mu_max=0.9, mu_slide=0.8)
     assert jammed.step(0.2) == DISCARD
@@ -64,7 +64,7 @@ def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outpu
     names = [n for n, v in w.variables.items() if v.causality == "output" and v.type == "Real"]
     found = w.jacobian(names, ["M_brake"])[:, 0]
     ends = [np.frombuffer(w.put(M_brake=5.0 + d).read(names)) for d in (0.5, -0.5)]
-    within(dict(zip(names, np.abs(ends[0] - ends[1] - found), strict=True)), 1e-11, "derivative beside the quotient")
+    within(dict(zip(names, np.abs(ends[0] - ends[1] - found), strict=True)), 256 * EPSILON, "derivative")
     beyond(abs(found[names.index("tau")]), 0.9, "derivative of tau")
 
 
@@ -79,7 +79,7 @@ def test_a_state_of_a_wheel_that_rolls_and_one_of_a_wheel_that_slides_take_each_
         assert (slides if k % 2 == 0 else rolls).ask("GetFMUstate", byref(state)) == OK
         if k in (999, 19999):
             size.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-    within(size[1] - size[0], 2000, "memory, kB")
+    within(size[1] - size[0], 500, "memory, kB")
     for w, end in ((slides, ends[1]), (rolls, ends[0]), (slides, ends[1])):
         assert w.ask("GetFMUstate", byref(state)) == OK
         assert other.ask("SetFMUstate", state) == OK
@@ -103,7 +103,7 @@ def test_states_saved_within_microseconds_of_a_passage_through_the_layer_go_on_w
         saved = w.to(t + 5e-7 * k).serialized()
         other = wheel().back(saved)
         assert other.to(2.5).bits() == wheel().back(saved).to(2.5).bits()
-        within(absolute_error(other.get("theta", "psi", "X_O"), end), 1e-6, "end apart")
+        assert other.get("theta", "psi", "X_O") == end
         other.close()
 
 
@@ -111,7 +111,7 @@ def test_fast_straight_rolling_stops_where_phi_alone_has_too_few_digits(wheel) -
     w = wheel().start(theta_start=pi / 2, phi_dot_start=-1e4).to(1e7)
     assert w.get("psi", "psi_dot") == [w.get("psi_start")[0], 0.0]
     assert w.step(2e8) == ERROR and "too few digits" in w.sentences[-1]
-    within(abs(w.get("phi")[0] / -1e11 - 1), 1e-9, "angle, relative")
+    within(abs(w.get("phi")[0] / -1e11 - 1), 16 * EPSILON, "angle, relative")
 
 
 @pytest.mark.parametrize("name", ["psi_start", "phi_start"])
@@ -122,5 +122,5 @@ def test_after_many_turns_the_derivatives_by_an_angle_are_those_of_the_first_tur
         wheel().initializing(**{**start, name: angle}).jacobian(names, [name])[:, 0]
         for angle in (0.4, 0.4 + turns, 0.5 + turns)
     )
-    within(absolute_error(far, near), 1e-5, "derivatives apart")
+    within(absolute_error(far, near), 64 * turns * EPSILON, "derivatives apart")
     beyond(absolute_error(off, near), 1e-3, "derivatives at another angle")

@@ -58,9 +58,9 @@ def test_steps_with_rounding_in_them_are_taken(wheel):
         summing.by(0.1)  # t += 0.1 ends at 9.99999999999998
     (exact,) = wheel().start().run([10.0])
     theta = np.frombuffer(exact, count=2)[1]
-    within(abs(w.get("theta")[0] - theta), 64 * EPSILON, "theta")  # rad
+    within(abs(w.get("theta")[0] - theta), 64 * EPSILON, "theta, rad")
     assert summing.get("theta")[0] != theta  # the time is another
-    within(abs(summing.get("theta")[0] - theta), 512 * EPSILON, "theta at the sum of the steps")  # 2e-14 s early
+    within(abs(summing.get("theta")[0] - theta), 512 * EPSILON, "theta at the sum of the steps, rad")  # 2e-14 s early
 
 
 def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel):
@@ -167,5 +167,5 @@ def test_the_large_system_is_left_out_whatever_the_moments_of_inertia_are(counte
 def test_the_free_wheel_is_integrated_over_one_nutation_only(counters):
     unfolded, stepped = counters(stop=10.0), counters(stop=10.0, formulation=2)
     assert counters(stop=1000.0, step=100.0) == unfolded
-    within(unfolded["n_rhs"] / stepped["n_rhs"], 0.2, "evaluations")
+    within(unfolded["n_rhs"] / stepped["n_rhs"], 0.2, "evaluations over those of the stepped wheel")
     assert unfolded["n_steps"] > 0  # one nutation is counted

@@ -102,8 +102,8 @@ def test_the_friction_is_tunable_and_acts_from_the_present_instant_on(wheel):
     energy = w.get("E")[0]
     assert energy == untouched.get("E")[0]
     # Power -s N |omega_z|: without friction nothing is lost.
-    beyond(energy - w.to(2.0).get("E")[0], 1.0, "E")
-    within(abs(energy - untouched.to(2.0).get("E")[0]), 9e-9, "E")
+    beyond(energy - w.to(2.0).get("E")[0], 1.0, "energy lost by friction, J")
+    within(abs(energy - untouched.to(2.0).get("E")[0]), 9e-9, "energy lost without friction, J")
 
 
 @pytest.mark.parametrize("law", [{}, {"friction_law": 2, "s": 0.03, "omega_s": 0.1}])

@@ -16,11 +16,11 @@ def test_the_random_states_include_both_signs_of_the_normal_force() -> None:
     scenes, motions = draw(1, eq.ROLLING)
     found = dynamics(eq.MULTIBODY, scenes, motions)
     pulls = found["lambda_"][:, 2] <= 0
-    within(abs(pulls.mean() - 0.5), 0.3, "pulls")
+    within(abs(pulls.mean() - 0.5), 0.3, "share of grounds that pull, off a half")
     braked = -scenes["friction"]["sigma"] * scenes["load"]["brake"]
     assert (found["tau"][pulls] == braked[pulls]).all()  # no pressure, no friction but the brake's
     assert (found["tau"][~pulls] != braked[~pulls]).all()
-    within(abs((braked[pulls] != 0).mean() - 0.45), 0.15, "braked")
+    within(abs((braked[pulls] != 0).mean() - 0.45), 0.15, "share of those under a brake, off 0.45")
 
 
 def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
@@ -29,13 +29,13 @@ def test_reduced_and_multibody_give_the_same_positions_and_velocities() -> None:
         eq.kinematics_each(f, scenes, eq.start_each(f, scenes, motions)) for f in (eq.REDUCED, eq.MULTIBODY)
     )
     a, b = (eq.columns(k, *k.dtype.names) for k in (reduced, multibody))
-    within(relative(a, b), 64 * EPSILON, "relative difference")
+    within(relative(a, b), 64 * EPSILON, "positions and velocities apart, relative")
     names = [name for name in motions.dtype.names if name not in ("slip_x", "slip_y")]
     given = eq.columns(motions, *names)
-    within(relative(eq.columns(reduced, *names), given), 64 * EPSILON, "relative difference, 2")
+    within(relative(eq.columns(reduced, *names), given), 64 * EPSILON, "those given and read, relative")
     scenes["wheel"]["r"] += 1e-9
     moved = eq.kinematics_each(eq.REDUCED, scenes, eq.start_each(eq.REDUCED, scenes, motions))
-    beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "relative difference")  # r longer by 1 nm
+    beyond(relative(eq.columns(moved, *moved.dtype.names), b), 1e-10, "those of a tube thicker by 1 nm apart, relative")
 
 
 def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced_form(symmetric: bool) -> None:
@@ -48,7 +48,7 @@ def test_the_euler_form_reads_its_state_back_to_the_bit_and_moves_as_the_reduced
     assert not (eq.columns(of_reduced, *names) == y).all()  # its psi_dot is computed anew
     within(relative(eq.columns(k, *k.dtype.names), eq.columns(of_reduced, *k.dtype.names)), 16 * EPSILON, "kinematics")
     euler, moved = (eq.dynamics_each(f, scenes, s) for f, s in ((eq.EULER, y), (eq.REDUCED, reduced)))
-    within(distance(euler, moved, scenes), 1024 * EPSILON, "dynamics")  # of states that differ by rounding
+    within(distance(euler, moved, scenes), 1024 * EPSILON, "dynamics, relative")  # of states that differ by rounding
 
 
 def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(law: int) -> None:
@@ -60,13 +60,13 @@ def test_the_derivative_is_that_of_the_kinematics_and_returns_the_normal_force(l
         rates = rates_of(eq.kinematics_each(formulation, scenes, y), found)
         stated = np.column_stack([rates[name] for name in state])
         exact = 6 if formulation is eq.MULTIBODY else 8  # multibody: the height drawn by rounding, else copies
-        within(relative(y_dot[:, :exact], stated[:, :exact]), 256 * EPSILON, "relative difference")
-        beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "relative difference")
+        within(relative(y_dot[:, :exact], stated[:, :exact]), 256 * EPSILON, "copied rates, relative")
+        beyond(relative(y_dot, stated * np.where(np.arange(y.shape[1]) == 0, 1.001, 1)), 8e-5, "with one 0.1 % larger")
         force = found["lambda_"]
         if formulation is not eq.MULTIBODY:
             assert (normal == force[:, 2]).all()
         # multibody: two solutions of (24), stabilised and pure, each with its rounding
-        within(relative(y_dot, stated), 4096 * EPSILON, "relative difference, 2")
+        within(relative(y_dot, stated), 4096 * EPSILON, "rates of all states, relative")
         within((np.abs(normal - force[:, 2]) / np.abs(force).max(axis=1)).max(), 4096 * EPSILON, "normal force")
 
 
@@ -95,11 +95,11 @@ def test_stop_spin_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(form
     after = eq.kinematics_each(formulation, scenes, y)
     kept = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "psi_dot", "theta_dot")
     assert (after["omega_z"] == 0).all()
-    within(np.abs(eq.columns(after, *kept) - eq.columns(before, *kept)).max(), 64 * EPSILON, "columns")
+    within(np.abs(eq.columns(after, *kept) - eq.columns(before, *kept)).max(), 64 * EPSILON, "change of the kept, SI")
     rolling = eq.columns(after, *after.dtype.names[:12])
-    within(np.abs(Paper(scenes["wheel"], rolling).slip).max(), 32 * 60 * EPSILON, "slip")  # speeds of 60 m/s
+    within(np.abs(Paper(scenes["wheel"], rolling).slip).max(), 32 * 60 * EPSILON, "slip, m/s")  # speeds of 60 m/s
     slid = np.hstack([rolling[:, :11], eq.columns(before, "phi_dot")])
-    beyond(np.abs(Paper(scenes["wheel"], slid).slip).max(), 6, "slip")
+    beyond(np.abs(Paper(scenes["wheel"], slid).slip).max(), 6, "slip with phi_dot as it was, m/s")
     assert (eq.dynamics_each(formulation, scenes, y)["tau"] * after["omega_z"] == 0).all()
 
 
@@ -120,9 +120,9 @@ def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None
     y = eq.start_each(eq.MULTIBODY, scenes, motions)
     multibody = eq.dynamics_each(eq.MULTIBODY, scenes, y)
     # two solutions for 9 unknowns
-    within(distance(multibody, transcribed(scenes, y), scenes), 32768 * EPSILON, "distance")
+    within(distance(multibody, transcribed(scenes, y), scenes), 32768 * EPSILON, "dynamics, relative")
     scenes["wheel"]["J_y"] *= 1 + 1e-9
-    beyond(distance(multibody, transcribed(scenes, y), scenes), 3e-9, "distance")
+    beyond(distance(multibody, transcribed(scenes, y), scenes), 3e-9, "dynamics with another J_y, relative")
 
 
 def test_both_formulations_agree_with_the_independent_reference(symmetric: bool) -> None:
@@ -130,11 +130,11 @@ def test_both_formulations_agree_with_the_independent_reference(symmetric: bool)
     reference = referenced(scenes, motions)
     for formulation in (eq.REDUCED, eq.MULTIBODY):
         found = dynamics(formulation, scenes, motions)
-        within(distance(found, reference, scenes), 16384 * EPSILON, "distance")  # 1/sin(theta) is up to 20
+        within(distance(found, reference, scenes), 16384 * EPSILON, "dynamics, relative")  # 1/sin(theta) is up to 20
         disturbed = scenes.copy()
         disturbed["wheel"]["J_z"] *= 1 + 1e-9
         found = dynamics(formulation, disturbed, motions)
-        beyond(distance(found, reference, scenes), 5e-9, "distance")
+        beyond(distance(found, reference, scenes), 5e-9, "dynamics with another J_z, relative")
 
 
 @pytest.mark.parametrize(("lever", "change"), [(0.2, 0.03), (1.0, 0.15), (10.0, 1.4)])

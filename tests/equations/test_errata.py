@@ -42,39 +42,39 @@ def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarra
 def test_mended_the_free_wheel_keeps_its_energy_and_stays_on_the_ground() -> None:
     t, y, energy = rolled(10.0)
     assert t[-1] == 10
-    within(absolute_error(energy, ENERGY), 1e-6, "difference")  # J
-    within(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 6e-9, "difference, 2")  # m
-    beyond(np.degrees(y[:, THETA].min()), 27, "state")
+    within(absolute_error(energy, ENERGY), 1e-6, "change of the energy, J")
+    within(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 6e-9, "height off the contact, m")
+    beyond(np.degrees(y[:, THETA].min()), 27, "least tilt, degrees")
 
 
 def test_printed_U_theta_of_5_sinks_the_free_wheel_into_the_ground() -> None:
     t, y, energy = rolled(10.0, "U_theta")
-    within(abs(t[-1] - 1.6), 0.1, "instant, s")  # O reaches the ground
-    beyond(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 0.2, "difference")
-    within(energy.min(), 20, "energy")
+    within(abs(t[-1] - 1.6), 0.02, "instant at which O reaches the ground, s")  # rows are 0.02 s apart
+    beyond(absolute_error(y[:, 2], 0.3 * np.sin(y[:, THETA]) + 0.05), 0.2, "height off the contact, m")
+    within(energy.min(), 20, "least energy, J")
 
 
 def test_printed_Q_theta_of_9_lets_the_energy_of_the_free_wheel_wander() -> None:
     t, _, energy = rolled(10.0, "Q_theta")
     assert t[-1] == 10
-    within(energy.min(), 0.8 * ENERGY, "energy")
-    beyond(energy.max(), 2.4 * ENERGY, "energy")
+    within(energy.min(), 0.8 * ENERGY, "least energy, J")
+    beyond(energy.max(), 2.4 * ENERGY, "largest energy, J")
 
 
 def test_printed_sign_of_F_beta_16_drives_the_free_wheel_through_the_ground() -> None:
     t, y, energy = rolled(0.7, "F_beta")
     flat = np.flatnonzero(y[:, THETA] < 0)[0]
-    within(abs(t[flat] - 0.585), 0.015, "instant, s")
-    within(t[-1], 0.62, "instant, s, 2")  # O itself reaches the ground
-    beyond(energy.max(), 1.08 * ENERGY, "energy")
+    within(abs(t[flat] - 0.585), 0.015, "instant at which it lies flat, s")
+    within(t[-1], 0.62, "instant at which O reaches the ground, s")
+    beyond(energy.max(), 1.08 * ENERGY, "largest energy, J")
 
 
 def test_a_sign_without_the_bracket_of_16_keeps_the_energy_but_not_the_motion() -> None:
     _, y, energy = rolled(0.8, "F_beta_bracket")
-    within(absolute_error(energy, ENERGY), 1e-6, "difference")  # the term at fault does no work
-    within(np.degrees(y[:, THETA].min()), 1, "state")  # degrees
+    within(absolute_error(energy, ENERGY), 1e-6, "change of the energy, J")  # the term at fault does no work
+    within(np.degrees(y[:, THETA].min()), 1, "least tilt, degrees")
     _, y, _ = rolled(10.0)
-    beyond(np.degrees(y[:, THETA].min()), 27, "state")
+    beyond(np.degrees(y[:, THETA].min()), 27, "least tilt, degrees")
 
 
 def test_16_needs_its_bracket_for_both_terms_to_be_of_one_dimension() -> None:
@@ -89,19 +89,19 @@ def test_16_needs_its_bracket_for_both_terms_to_be_of_one_dimension() -> None:
     (first, second), (first_faster, second_faster) = terms(y), terms(faster)
     assert first.shape[1:] == (3, 3)  # a matrix
     assert second.shape[1:] == (3,)  # plus a column
-    within(absolute_error(first_faster, 3 * first), 512 * EPSILON, "difference")  # 1/s
-    within(absolute_error(second_faster, 9 * second), 16384 * EPSILON, "difference, 2")  # plus 1/s2
-    beyond(absolute_error(first_faster, 9 * first), 4, "difference")
+    within(absolute_error(first_faster, 3 * first), 512 * EPSILON, "matrix off three times itself")  # 1/s
+    within(absolute_error(second_faster, 9 * second), 16384 * EPSILON, "column off nine times itself")  # plus 1/s2
+    beyond(absolute_error(first_faster, 9 * first), 4, "matrix off nine times itself")
 
 
 def test_24_taken_as_printed_for_q_dot_contradicts_the_constraint_19() -> None:
     t, y, _ = rolled(10.0)
     paper = Paper(WHEEL, y[t == 1][0])
-    within(np.abs(times(paper.B, paper.q_dot)).max(), 1e-9, "times")  # the wheel rolls
-    beyond(np.abs(times(paper.B_dot, paper.q_dot)).max(), 0.5, "times")  # so [B]{q_dot} != -[B_dot]{q_dot}
+    within(np.abs(times(paper.B, paper.q_dot)).max(), 1e-9, "[B]{q_dot}, m/s")  # the wheel rolls
+    beyond(np.abs(times(paper.B_dot, paper.q_dot)).max(), 0.5, "[B_dot]{q_dot}, m/s2")  # not -[B]{q_dot}
     x = paper.solve()[:6]
-    within(absolute_error(times(paper.B, x), -times(paper.B_dot, paper.q_dot)), 128 * EPSILON, "difference")
-    beyond(absolute_error(x, paper.q_dot), 1, "difference")
+    within(absolute_error(times(paper.B, x), -times(paper.B_dot, paper.q_dot)), 128 * EPSILON, "sum of the two, m/s2")
+    beyond(absolute_error(x, paper.q_dot), 1, "solution of (24) off {q_dot}")
 
 
 def test_24_yields_accelerations_by_their_dimension() -> None:
@@ -111,8 +111,8 @@ def test_24_yields_accelerations_by_their_dimension() -> None:
     wheel["g"] *= 9
     fast = Paper(wheel, y).solve()
     size = np.abs(fast).max(axis=1, keepdims=True)
-    within(absolute_error(fast / size, 9 * slow / size), 256 * EPSILON, "difference")  # 1/s2: accelerations and forces
-    beyond(absolute_error(fast / size, 3 * slow / size), 0.1, "difference")  # not 1/s
+    within(absolute_error(fast / size, 9 * slow / size), 256 * EPSILON, "solution off nine times itself")  # 1/s2
+    beyond(absolute_error(fast / size, 3 * slow / size), 0.1, "solution off three times itself")  # not 1/s
 
 
 def test_the_minus_of_24_belongs_to_B_tilde_alone() -> None:
@@ -142,7 +142,7 @@ def test_31_gives_the_inertia_of_the_ring_not_of_the_torus() -> None:
     mass = a * out / (a * out).sum() * 20  # equal density
     J_x = (mass * ((out * np.sin(u)) ** 2 + z**2)).sum()
     J_z = (mass * out**2).sum()
-    within(relative_error(J_x, 20 * (0.3**2 / 2 + 5 / 8 * 0.05**2)), 1e-4, "J x")
-    within(relative_error(J_z, 20 * (0.3**2 + 3 / 4 * 0.05**2)), 4e-5, "J z")
-    within(abs(J_x / 0.9 - 1.035), 0.005, "J x, 2")
-    within(abs(J_z / 1.8 - 1.025), 0.005, "J z, 2")
+    within(relative_error(J_x, 20 * (0.3**2 / 2 + 5 / 8 * 0.05**2)), 1e-4, "J_x of the torus, relative")
+    within(relative_error(J_z, 20 * (0.3**2 + 3 / 4 * 0.05**2)), 4e-5, "J_z of the torus, relative")
+    within(abs(J_x / 0.9 - 1.035), 0.005, "J_x over that of the ring, off 1.035")
+    within(abs(J_z / 1.8 - 1.025), 0.005, "J_z over that of the ring, off 1.025")

@@ -31,12 +31,12 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation,
     driven = dynamics(formulation, scenes, motions)["lambda_"]
     alpha = answer_of_N(scenes, motions)
     size = np.abs(driven).max(axis=1) / moment
-    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 256 * EPSILON, "relative error")
+    within((np.abs((driven[:, 2] - free) / moment - alpha) / size).max(), 256 * EPSILON, "answer of N, relative")
     if symmetric:
         assert (alpha == 0).all()
         return
-    beyond(np.abs(alpha * scenes["wheel"]["r_0"]).max(), 0.1, "r_0")  # it does answer
-    beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "relative error")  # the other sign
+    beyond(np.abs(alpha * scenes["wheel"]["r_0"]).max(), 0.1, "largest alpha r_0")  # N does answer
+    beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "answer of N off -alpha, relative")
 
 
 def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(formulation: eq.Formulation) -> None:
@@ -51,10 +51,10 @@ def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(
     size = np.abs(found["lambda_"]).max(axis=1)
     unpressed = N_free - alpha * kappa * brake
     N = np.where(unpressed > 0, unpressed / (1 + alpha * kappa * s), unpressed)
-    within((np.abs(found["lambda_"][:, 2] - N) / size).max(), 256 * EPSILON, "lambda_")
+    within((np.abs(found["lambda_"][:, 2] - N) / size).max(), 256 * EPSILON, "N, relative")
     tau = -kappa * (s * np.maximum(N, 0) + brake)
-    within((np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max(), 64 * EPSILON, "r_0")
+    within((np.abs(found["tau"] - tau) / (scenes["wheel"]["r_0"] * size)).max(), 64 * EPSILON, "tau over r_0, relative")
     without_alpha = np.abs(found["lambda_"][:, 2] - N_free) / size
-    beyond(without_alpha.max(), 1e-2, "without alpha")
+    beyond(without_alpha.max(), 1e-2, "N off that of the free wheel, relative")
     without_brake = np.where(N_free > 0, N_free / (1 + alpha * kappa * s), N_free)
-    beyond((np.abs(found["lambda_"][:, 2] - without_brake) / size).max(), 1e-2, "lambda_")
+    beyond((np.abs(found["lambda_"][:, 2] - without_brake) / size).max(), 1e-2, "N without the brake, relative")

@@ -8,7 +8,7 @@ from ctypes import byref, c_double
 import numpy as np
 import pytest
 from equations.paper_transcription import Paper, times
-from equations.pointwise import Table, draw
+from equations.pointwise import Table, draw, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, relative_error, within
 
@@ -67,10 +67,10 @@ def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
     paper = Paper(scenes["wheel"], state(k))
     place = eq.columns(k, "X_O", "Y_O", "Z_O") + times(paper.A, paper.contact)
     found = contacts(scenes, k)
-    within(np.abs(found[:, :2] - place[:, :2]).max(), 32 * 5 * EPSILON, "difference")  # places of 5 m
-    within(np.abs(place[:, 2]).max(), 32 * 5 * EPSILON, "place")  # it lies on the ground
+    within(np.abs(found[:, :2] - place[:, :2]).max(), 32 * 5 * EPSILON, "contact point, m")  # places of 5 m
+    within(np.abs(place[:, 2]).max(), 32 * 5 * EPSILON, "height of the lowest point, m")
     k["theta"] += 1e-9
-    beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contacts")
+    beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contact point of another tilt, m")
 
 
 def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
@@ -83,9 +83,9 @@ def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
     slope = (contacts(scenes, ahead) - contacts(scenes, behind))[:, :2] / (2 * h)
     found = contacts(scenes, k)[:, 2:]
     speed = np.abs(found).max()
-    within(np.abs(found - slope).max() / speed, 1e-8, "speed")
+    within(np.abs(found - slope).max() / speed, 1e-8, "velocity of the contact, relative")
     k["theta_dot"] *= 1.001
-    beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "contacts")
+    beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "velocity at another rate, relative")
 
 
 def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
@@ -94,7 +94,6 @@ def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     left = np.cross([0, 0, 1], e1)
     expected = np.column_stack([(d["lambda_"] * e1).sum(axis=1), (d["lambda_"] * left).sum(axis=1)])
     found = horizontal(k, d["lambda_"])
-    size = np.abs(d["lambda_"]).max()
-    within(np.abs(found - expected).max() / size, 64 * EPSILON, "relative error")
-    beyond(np.abs(found - expected * [1, -1]).max() / size, 0.1, "relative error")  # to the right
-    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 64 * EPSILON, "difference")
+    within(relative(found, expected), 64 * EPSILON, "force in wheel axes, relative")
+    beyond(relative(found, expected * [1, -1]), 0.1, "force to the right of e1, relative")
+    within(relative_error(np.hypot(*found.T), np.hypot(*d["lambda_"][:, :2].T)), 64 * EPSILON, "size of it, relative")

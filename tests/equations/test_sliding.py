@@ -22,7 +22,7 @@ from support.bounds import EPSILON, beyond, within
 ROWS = 3000
 FORMS = pytest.mark.parametrize("form", [eq.SLIDING, eq.MULTIBODY_SLIDING], ids=["reduced", "multibody"])
 ROOM = 0.05  # states with less are not judged: N grows without bound
-BOUND = 1e-9
+BOUND = 3e-10  # rounding grows with N
 
 
 class Rows:
@@ -95,10 +95,10 @@ def test_accelerations_and_reactions_of_a_sliding_wheel_are_newtons_and_eulers(f
     def error(scenes: Table) -> float:
         return distance(eq.dynamics_each(form, scenes, states(form, rows))[seen], judge, scenes[seen])
 
-    within(error(rows.scenes), BOUND, "distance")
+    within(error(rows.scenes), BOUND, "dynamics off the reference, relative")
     wrong = rows.scenes.copy()
     wrong["mu_slide"] *= 1 + 1e-6
-    beyond(error(wrong), 1e-7, "distance with another coefficient")
+    beyond(error(wrong), 1e-7, "dynamics with another coefficient, relative")
 
 
 @FORMS
@@ -109,9 +109,9 @@ def test_the_slip_changes_as_newton_and_euler_have_it(form, rows: Rows) -> None:
     speed, psi_dot = y[:, form.slip_index], rows.motions["psi_dot"]
     got = np.column_stack([y_dot[:, form.slip_index], speed * (y_dot[:, form.slip_index + 1] + psi_dot)])
     want = np.array([(push.grow, push.turn) for push in rows.pushes])
-    within(relative(got[rows.judged], want[rows.judged]), 1e-8, "rate of the slip")
+    within(relative(got[rows.judged], want[rows.judged]), 16384 * EPSILON, "rate of the slip, relative")
     slow = np.column_stack([got[:, 0], speed * y_dot[:, form.slip_index + 1]])
-    beyond(relative(slow[rows.judged], want[rows.judged]), 1e-2, "without the turning of the axes")
+    beyond(relative(slow[rows.judged], want[rows.judged]), 1e-2, "rate without the turning of the axes, relative")
 
 
 @FORMS
@@ -125,7 +125,7 @@ def test_the_velocity_of_O_is_that_of_rolling_and_the_slip_on_top(form, rows: Ro
     within(relative(still, eq.columns(rolling, "X_O_dot", "Y_O_dot", "Z_O_dot")), 64 * EPSILON, "velocity without slip")
     slip = (rows.motions["slip_x"] + 1j * rows.motions["slip_y"]) * np.exp(1j * rows.motions["psi"])
     off = (fast - still)[:, 0] + 1j * (fast - still)[:, 1] - slip
-    within(float((np.abs(off) / (1 + np.abs(fast).max(axis=1))).max()), 64 * EPSILON, "slip")
+    within(float((np.abs(off) / (1 + np.abs(fast).max(axis=1))).max()), 64 * EPSILON, "slip in the velocity, relative")
 
 
 def slips(rows: Rows, directions: Table) -> Table:
@@ -143,19 +143,23 @@ def test_growth_turning_and_settling_of_a_slip_follow_from_three_quantities(rows
     for (found, mu, _), push, chi in zip(rows.found, rows.pushes, rows.turned(), strict=True):
         want.append((push.N, push.room, push.grow, push.turn, -found.turning(mu, chi)))
     got, judge, seen = slips(rows, rows.chi), np.array(want), rows.judged
-    within(relative(got[seen][:, :1], judge[seen][:, :1]), BOUND, "normal force")
-    within(relative(got[seen][:, 1:2], judge[seen][:, 1:2]), BOUND, "room")
-    within(relative(got[seen][:, 2:], judge[seen][:, 2:]), BOUND, "rates")
-    beyond(relative(slips(rows, rows.chi + 1e-6)[seen][:, 2:], judge[seen][:, 2:]), 1e-7, "in another direction")
+    turned = slips(rows, rows.chi + 1e-6)
+    parts = {"normal force": ([0], BOUND), "room": ([1], 1024 * EPSILON)}
+    parts["growth, turning and settling"] = ([2, 3, 4], 4096 * EPSILON)
+    for name, (columns, bound) in parts.items():
+        within(relative(got[seen][:, columns], judge[seen][:, columns]), bound, f"{name}, relative")
+        beyond(relative(turned[seen][:, columns], judge[seen][:, columns]), 1e-7, f"{name} in another direction")
 
 
 def test_a_slip_begins_in_the_direction_that_grows_and_is_kept(rows: Rows) -> None:
     """Against the roots of a quartic, the nearest to the opposite of grip's force first; none where there is none."""
     reduced = eq.start_each(eq.REDUCED, rows.scenes, rows.motions)
-    worst, none, count = 0.0, 0, 0
+    directions, none, count = [], 0, 0
     for scene, y, (found, mu, _), psi in zip(rows.scenes, reduced, rows.found, rows.motions["psi"], strict=True):
         record = eq.Scene.from_buffer_copy(scene.tobytes())
         got = eq.LIBRARY.wheel_slip_direction(byref(record), y.ctypes.data_as(eq.DOUBLES))
+        record.mu_slide *= 1 + 1e-9
+        near = eq.LIBRARY.wheel_slip_direction(byref(record), y.ctypes.data_as(eq.DOUBLES))
         least = 1e-10 * float(np.hypot(*found.free))
         starts = []
         for chi in resting_directions(found, mu):
@@ -168,6 +172,8 @@ def test_a_slip_begins_in_the_direction_that_grows_and_is_kept(rows: Rows) -> No
             none += bool(np.isnan(got))
             count += 1
             continue
-        worst = max(worst, abs(np.remainder(got + psi - starts[0] + pi, 2 * pi) - pi))
+        directions.append((got + psi - starts[0], near + psi - starts[0]))
     assert none == count > 100 and ROWS - count > 500
-    within(worst, 1e-6, "direction, rad")
+    off, moved = np.abs(np.remainder(np.array(directions).T + pi, 2 * pi) - pi)
+    within(np.max(off), 1024 * EPSILON, "direction, rad")
+    beyond(np.nanmax(moved), 1e-10, "direction with another coefficient, rad")

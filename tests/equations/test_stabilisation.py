@@ -26,9 +26,9 @@ def test_the_multibody_derivative_is_24_with_slip_and_height_drawn_to_zero(law: 
     scenes, rolling, off = rolling_and_off(law)
     y_dot, _ = eq.derivative_each(eq.MULTIBODY, scenes, rolling + off)
     # two solutions
-    within(relative(y_dot, stabilised_rate(scenes, rolling + off)), 2048 * EPSILON, "relative difference")
+    within(relative(y_dot, stabilised_rate(scenes, rolling + off)), 2048 * EPSILON, "rates, relative")
     smaller = stabilised_rate(scenes, rolling + 0.999 * off)  # errors 0.1 % smaller
-    beyond(relative(y_dot, smaller), 8e-4, "relative difference")
+    beyond(relative(y_dot, smaller), 8e-4, "rates of smaller errors, relative")
     assert (y_dot[:, SPIN] == 0).all() == (law == eq.HELD)
 
 
@@ -37,4 +37,4 @@ def test_24_itself_sees_neither_slip_nor_height(law: int) -> None:
     answers = [eq.dynamics_each(eq.MULTIBODY, scenes, y) for y in (rolling, rolling + off)]
     assert (answers[0] == answers[1]).all()
     rates = [eq.derivative_each(eq.MULTIBODY, scenes, y)[0][:, 6:] for y in (rolling, rolling + off)]
-    beyond(relative(*rates), 0.6, "relative difference")  # the stabilised derivative does
+    beyond(relative(*rates), 0.6, "stabilised rates apart, relative")

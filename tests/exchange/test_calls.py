@@ -36,7 +36,7 @@ def test_the_derivatives_are_the_variables_of_that_name_to_the_last_tenmillionth
     with at_odd(library, s=0.02) as wheel:
         wheel.place(0.3, np.where(ODD == 1.1, theta, ODD))
         assert wheel.derivatives().tolist() == wheel.get(*DERIVATIVES)
-        beyond(np.abs(wheel.derivatives() - wheel.get(*reversed(DERIVATIVES))).max(), 1, "in another order")
+        beyond(np.abs(wheel.derivatives() - wheel.get(*reversed(DERIVATIVES))).max(), 1, "derivatives in another order")
 
 
 def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
@@ -121,8 +121,8 @@ def test_directional_derivatives_are_differences_under_every_law(library: Librar
         got = wheel.jacobian(unknowns, tuple(steps))
         want = np.array([central(wheel, known, h, unknowns) for known, h in steps.items()]).T
     size = 1 + np.abs(want).max(axis=0)
-    within((np.abs(got - want) / size).max(), 1e-9, "Jacobian")
-    beyond((np.abs(got * (1 + 1e-6) - want) / size).max(), 2e-7, "Jacobian, a millionth larger")
+    within((np.abs(got - want) / size).max(), 1e-9, "Jacobian, relative")
+    beyond((np.abs(got * (1 + 1e-6) - want) / size).max(), 2e-7, "Jacobian a millionth larger, relative")
 
 
 def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: Library) -> None:
@@ -284,7 +284,7 @@ def test_another_limit_of_the_grip_is_decided_in_the_event_mode_that_sets_it(lib
     """An upright wheel that F_X pushes requires |lambda_x| / N = 0.4 with F_X = 0.4 m g (1 + m R^2 / J_z)."""
     push = 0.4 * WEIGHT * (1 + 20 * 0.35**2 / 1.8)
     with exchange(library, theta_start=np.pi / 2, phi_dot_start=-3.0, mu_max=0.5, F_X=push, psi_start=0.0) as wheel:
-        within(abs(wheel.get("mu_required")[0] - 0.4), 64 * EPSILON, "friction required")
+        within(abs(wheel.get("mu_required")[0] - 0.4), 16 * EPSILON, "friction required")
         assert wheel.indicator("lost_grip") > 0
         assert wheel.enterEventMode() == OK
         wheel.put(mu_max=mu_max)
@@ -367,12 +367,12 @@ def test_directional_derivatives_next_to_lift_off_are_those_of_the_wheels_side(l
     share = rng.choice([-1, 1]) * 10 ** rng.uniform(-6, -2)
     with at_odd(library, **law) as wheel, library.wheel().start(**{**GENERAL, **law, "psi_dot_start": 0.9}) as slave:
         wheel.place(0.3, ODD + rng.normal(0, 0.1, 8))
-        within(jacobian_error(wheel, LOADS, 50.0, share), 1e-9, "loads, model exchange")
-        within(jacobian_error(wheel, STATES[2:], 2e-3, share), 1e-6, "states, model exchange")
-        within(jacobian_error(slave, LOADS, 50.0, share), 1e-9, "loads, co-simulation")
+        within(jacobian_error(wheel, LOADS, 50.0, share), 1e-11, "by loads in model exchange, relative")
+        within(jacobian_error(wheel, STATES[2:], 2e-3, share), 1e-8, "by states in model exchange, relative")
+        within(jacobian_error(slave, LOADS, 50.0, share), 1e-11, "by loads in co-simulation, relative")
         want = on_its_side(wheel, "F_Z", 50.0)
         press(wheel, -share)  # the partner: the other side
-        beyond(absolute_error(wheel.jacobian(REACTIONS, ("F_Z",))[:, 0], want), 1e-3, "derivative on the other side")
+        beyond(absolute_error(wheel.jacobian(REACTIONS, ("F_Z",))[:, 0], want), 1e-3, "by F_Z on the other side")
 
 
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6, 1e-9])
@@ -382,7 +382,7 @@ def test_directional_derivatives_keep_their_digits_on_a_slope_that_is_nearly_a_w
     for _ in range(10):
         with exchange(library, **values) as wheel:
             wheel.place(0.1, ODD + rng.normal(0, 0.1, 8))
-            within(jacobian_error(wheel, LOADS, 50.0, rng.uniform(0.5, 5)), 1e-9, "loads on a wall")
+            within(jacobian_error(wheel, LOADS, 50.0, rng.uniform(0.5, 5)), 1e-10, "derivatives on a wall, relative")
             exact = wheel.jacobian(REACTIONS, LOADS)
             wheel.place(0.1, ODD)  # the partner: another state
-            beyond(np.abs(wheel.jacobian(REACTIONS, LOADS) - exact).max(), 1e-4, "loads in another state")
+            beyond(np.abs(wheel.jacobian(REACTIONS, LOADS) - exact).max(), 1e-4, "derivatives in another state")

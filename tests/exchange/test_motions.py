@@ -49,10 +49,10 @@ def test_the_papers_scenes_and_all_37_transitions_come_out_of_another_solver(lib
         return range_error(got, want, HEADLINE), late
 
     error, late = errors(s)
-    within(error, 1e-8, "error")
-    within(late, 1e-9, "instants, s")
-    beyond(errors(s, 1e-5)[0], 5e-5, "error at a loose tolerance")
-    beyond(errors(s + 1e-6)[0], 3e-5, "error of another s")
+    within(error, 1e-8, "error / range")
+    within(late, 1e-9, "instants of the transitions, s")
+    beyond(errors(s, 1e-5)[0], 5e-5, "error at a loose tolerance / range")
+    beyond(errors(s + 1e-6)[0], 3e-5, "error of another s / range")
     if s:
         beyond(errors(s * (1 + 1e-6))[1], 2e-7, "instants of another s, s")
 
@@ -63,18 +63,18 @@ def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(libra
     grid = {"stop_time": 10, "output_interval": 0.1, "relative_tolerance": tolerance, "record_events": False}
     how = {"fmi_type": "ModelExchange", "start_values": {"s": 0.03}, "output": [*HEADLINE], "debug_logging": True}
     run = simulate_fmu(library.folder, **grid, **how)
-    within(range_errors(run, want, HEADLINE), 1e4 * tolerance, "error")
+    within(range_errors(run, want, HEADLINE), 1e4 * tolerance, "error / range")
     # FMPy prints the sentences. (Its argument `logger` would stay in use, freed, by all later runs of this process.)
     found = [float(t) for t in re.findall(r"^\[OK\] t = (\S+) s", capfd.readouterr().out, re.M)]
     assert len(found) == 37
     late = np.abs(np.array(found) - read_table("paper_friction_events")["t"][1:]).max()
-    within(late / tolerance, 1e4, "instants over tolerance, s")
+    within(late / tolerance, 1e4, "instants of the transitions over tolerance, s")
 
 
 def test_a_released_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library) -> None:
     run, _, sentences = moved(library, [2.0], phi_dot_start=0.0)
     assert "lies flat" in sentences[-1]
-    within(abs(run.ended - fall_time(Wheel(), 5 * pi / 12, 1e-7)), 3e-11, "instant, s")
+    within(abs(run.ended - fall_time(Wheel(), 5 * pi / 12, 1e-7)), 3e-11, "instant at which it lies flat, s")
     beyond(abs(run.ended - fall_time(Wheel(r=0.051), 5 * pi / 12, 1e-7)), 1e-4, "instant of another wheel, s")
 
 
@@ -82,7 +82,7 @@ def test_a_light_rim_lifts_off_where_co_simulation_ends(library: Library) -> Non
     done = library.simulate([0.0, 2.0], 1e-12, **RIM)
     run, _, sentences = moved(library, [2.0], **RIM)
     assert "lifted off" in sentences[-1]
-    within(abs(run.ended - done.end), 1e-10, "instant, s")
+    within(abs(run.ended - done.end), 1e-10, "instant at which it lifts off, s")
     with exchange(library, **RIM) as wheel:  # ten microseconds before, it has not lifted off
         Run(wheel, 1e-11, no_inputs).to(done.end - 1e-5)
         assert not wheel.event().terminateSimulation
@@ -97,7 +97,7 @@ def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) 
     run, got, sentences = moved(library, [0.4, 3.0], inputs=brake, **{**UPRIGHT, "phi_dot_start": -5.0})
     stop = 0.5 + (2 * 5.0 * rolling_inertia(Wheel()) / 40.0) ** 0.5
     assert "stick" in sentences[0] and len(sentences) == 1
-    within(abs(run.events[-1] - stop), 1e-11, "instant, s")
+    within(abs(run.events[-1] - stop), 1e-11, "instant at which it stops, s")
     assert got["omega_z"][-1] == 0
     late, _, _ = moved(library, [3.0], inputs=brake, s=1e-5, **{**UPRIGHT, "phi_dot_start": -5.0})
     beyond(abs(late.events[-1] - stop), 1e-5, "instant with a trace of rolling friction, s")
@@ -147,5 +147,5 @@ def test_a_driven_wheel_on_a_slope_agrees_with_the_reference(library: Library) -
         _, got, _ = moved(library, times, 1e-11, push, keep_contact=True, **start_values(wheel, start))
         return max(float(np.abs(got[n] - want[n]).max() / (1 + np.abs(want[n]).max())) for n in names)
 
-    within(gap(wheel), 1e-9, "gap")
-    beyond(gap(Wheel(**{**vars(wheel), "slope": 0.1 + 1e-6})), 5e-6, "gap to a steeper road")
+    within(gap(wheel), 1e-9, "outputs off the reference, relative")
+    beyond(gap(Wheel(**{**vars(wheel), "slope": 0.1 + 1e-6})), 5e-6, "outputs off those of a steeper road, relative")

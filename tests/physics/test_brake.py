@@ -24,12 +24,12 @@ def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Libra
     instant, distance = 5.0 * J / BRAKE, R * 5.0**2 * J / (2 * BRAKE)
     ((t, mode),) = run.events
     assert mode == 0
-    within(abs(t - instant), 64 * EPSILON, "instant, s")  # s; the log gives nanoseconds
-    within(abs(run["X_O"][-1] - distance), 64 * EPSILON, "X_O")  # m
+    within(abs(t - instant), 64 * EPSILON, "instant at which it stops, s")  # logged to the nanosecond
+    within(abs(run["X_O"][-1] - distance), 64 * EPSILON, "way, m")
     assert (run["omega_z"][1:] == 0).all()  # held without creep
-    within(abs(run["tau"][0] - BRAKE), 64 * BRAKE * EPSILON, "tau")  # against omega_z < 0
+    within(abs(run["tau"][0] - BRAKE), 64 * BRAKE * EPSILON, "moment of the brake, N m")  # against omega_z < 0
     ((late, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=1e-6).events  # the partner: a trace of s N
-    beyond(abs(late - instant), 8e-7, "instant, s")
+    beyond(abs(late - instant), 8e-7, "instant with a trace of friction, s")
 
 
 def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
@@ -38,16 +38,16 @@ def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:
     release = BRAKE / (R * rate)
     (t, mode) = run.events[-1]
     assert mode == -1
-    within(abs(t - release), 1e-9, "instant, s")
+    within(abs(t - release), 1e-9, "instant at which it lets go, s")  # logged to the nanosecond
     late = 0.5 - release
-    within(abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)), 128 * EPSILON, "omega_z")
-    beyond(abs(run["omega_z"][-1] + rate * R * 0.5**2 / (2 * J)), 0.1, "omega_z")
+    within(abs(run["omega_z"][-1] + rate * R * late**2 / (2 * J)), 128 * EPSILON, "omega_z, rad/s")
+    beyond(abs(run["omega_z"][-1] + rate * R * 0.5**2 / (2 * J)), 0.1, "omega_z without the hold, rad/s")
 
 
 def test_a_brake_that_is_let_off_leaves_nothing_behind(library: Library) -> None:
     off = Schedule(((0.0, {"M_brake": (BRAKE,)}), (0.1, {"M_brake": (0.0,)})))
     run = library.simulate([0.0, 0.1, 0.5, 1.0], 1e-10, off, **UPRIGHT)
-    within(abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)), 64 * 5 * EPSILON, "omega_z")  # 5 rad/s
+    within(abs(run["omega_z"][1] - (-5.0 + BRAKE * 0.1 / J)), 64 * 5 * EPSILON, "omega_z, rad/s")
     assert (run["omega_z"][2:] == run["omega_z"][1]).all()
     assert (run["tau"][2:] == 0).all()
 
@@ -63,7 +63,7 @@ def test_of_a_rolling_wheel_the_brake_gives_its_capacity_and_the_ground_the_rest
         brake = -np.sign(spin) * (CAPACITY - 10.0 * run["t"])
         within(np.abs(run["tau_brake"] - brake).max(), 64 * CAPACITY * EPSILON, "moment of the brake, N m")
         ground = run["tau"] - run["tau_brake"]
-        within(np.abs(ground + np.sign(spin) * ROLLING).max(), 64 * CAPACITY * EPSILON, "moment of the ground, N m")
+        within(np.abs(ground + np.sign(spin) * ROLLING).max(), 16 * CAPACITY * EPSILON, "moment of the ground, N m")
         beyond(np.abs(run["tau"] - brake).min(), 3, "moment of both, N m")
 
 
@@ -84,6 +84,6 @@ def test_the_brakes_moment_does_not_jump_where_it_lets_go(library: Library) -> N
     times = [0.0, release - 1e-6, release + 1e-6, release + 0.1]
     run = braked(library, times, {"M_brake": (CAPACITY,), "F_X": (0.0, rate)}, phi_dot_start=0.0, s=S)
     assert run["omega_z"][1] == 0 > run["omega_z"][2]
-    within(abs(run["tau_brake"][2] - run["tau_brake"][1]), 2e-6 * R * rate, "jump, N m")
+    within(abs(run["tau_brake"][2] - run["tau_brake"][1]), 2e-6 * R * rate, "jump of the brake's moment, N m")
     within(np.abs(run["tau_brake"][2:] - CAPACITY).max(), 64 * CAPACITY * EPSILON, "moment of the brake, N m")
     beyond(run["tau"][2] - run["tau_brake"][1], 3, "jump to the moment of both, N m")

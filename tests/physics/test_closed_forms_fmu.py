@@ -20,8 +20,8 @@ THIN = Wheel(r=0.0)
 
 def test_upright_rolling_slows_down_linearly_and_then_stands(library: Library, formulation: int) -> None:
     rough = Wheel(s=0.03)
-    within(exact.straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "straight error")  # of 2 rad/s
-    beyond(exact.straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "straight error")
+    within(exact.straight_error(library, formulation, 0.03, rough), 1024 * 2 * EPSILON, "spin, rad/s, and way, m")
+    beyond(exact.straight_error(library, formulation, 0.03, Wheel(s=0.03, r=0.0)), 0.1, "spin and way of a disc")
 
 
 def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> None:
@@ -32,13 +32,13 @@ def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> Non
         growth = (58.86 / tipping_inertia(judged)) ** 0.5
         return float(np.abs(lean / [1e-6 * cosh(growth * t) for t in times] - 1).max())
 
-    within(gap(Wheel()), 2e-8, "gap")  # the second order is lean^2
-    beyond(gap(THIN), 0.1, "gap")
+    within(gap(Wheel()), 2e-8, "lean, relative")  # the second order is lean^2
+    beyond(gap(THIN), 0.1, "lean of a disc, relative")
 
 
 def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
-    within(exact.fall_error(library, formulation, Wheel()), 4e-10, "fall error")  # s
-    beyond(exact.fall_error(library, formulation, THIN), 1e-2, "fall error")
+    within(exact.fall_error(library, formulation, Wheel()), 4e-10, "instant at which it lies flat, s")
+    beyond(exact.fall_error(library, formulation, THIN), 1e-2, "instant at which a disc lies flat, s")
 
 
 def test_a_wheel_released_without_spin_falls_as_printed(library: Library, formulation: int) -> None:
@@ -53,13 +53,13 @@ def test_a_wheel_released_without_spin_falls_as_printed(library: Library, formul
         return float(np.abs(run["theta_ddot"] - printed).max())
 
     for s in (0.0, 0.03):  # free, held
-        within(gap(s, 1), 1e-9, "theta_ddot, rad/s2")
+        within(gap(s, 1), 64 * 25 * EPSILON, "theta_ddot, rad/s2")
         beyond(gap(s, 0), 1, "theta_ddot without the term in theta_dot^2, rad/s2")
 
 
 def test_a_light_rim_lifts_off_where_the_normal_force_of_the_fall_vanishes(library: Library, formulation: int) -> None:
-    within(exact.lift_off_error(library, formulation, 0.0), 2e-8, "lift off error")
-    beyond(exact.lift_off_error(library, formulation, 1e-5), 1e-6, "lift off error")
+    within(exact.lift_off_error(library, formulation, 0.0), 2e-8, "instant, s, and angle of the lift-off, rad")
+    beyond(exact.lift_off_error(library, formulation, 1e-5), 1e-6, "instant, s, and angle of another lift-off, rad")
 
 
 CIRCLES = [(THIN, Wheel(), 0.07, psi_dot, theta) for psi_dot, theta in ((1.0, 1.1), (-2.0, 1.1), (6.0, 0.3))]
@@ -70,9 +70,9 @@ CIRCLES += [(Wheel(), OFF, 2e-6, psi_dot, theta) for psi_dot, theta in ((1.0, 1.
 @pytest.mark.parametrize(("wheel", "other", "least", "psi_dot", "theta"), CIRCLES)
 def test_thin_disc_and_torus_stay_each_in_its_steady_circle(library, formulation, wheel, other, least, psi_dot, theta):
     """That of the disc is in textbooks; there a torus wanders."""
-    # ten tolerances
-    within(exact.circle_error(library, wheel, wheel, formulation, psi_dot, theta), 1e-10, "circle error")
-    beyond(exact.circle_error(library, other, wheel, formulation, psi_dot, theta), least, "circle error")
+    wander = exact.circle_error(library, wheel, wheel, formulation, psi_dot, theta)
+    within(wander, 1e-11 if formulation == 3 else 4096 * EPSILON, "wander, rad, rad/s, m/s")
+    beyond(exact.circle_error(library, other, wheel, formulation, psi_dot, theta), least, "wander off another circle")
 
 
 # The critical speed of upright straight rolling: the paper's wheel needs 2.63 rad/s and has 2. A lean e = theta - pi/2
@@ -88,13 +88,13 @@ def test_a_lean_swings_or_grows_by_the_linearised_equation(library: Library) -> 
         return float(np.abs(exact.lean_of(library, omega_z, times) - np.cos(kappa * times).real).max())
 
     for factor in (0.5, 0.9, 1.1, 2.0):
-        within(gap(exact.TORUS, factor), 2e-6, "gap")
-        beyond(gap(Wheel(r=0.0), factor), 1e-2, "gap")
+        within(gap(exact.TORUS, factor), 2e-6, "lean over that at the start")
+        beyond(gap(Wheel(r=0.0), factor), 1e-2, "lean of a disc over that at the start")
 
 
 def test_the_critical_speed_is_the_zero_of_the_measured_stiffness(library: Library) -> None:
     found = exact.measured_critical_spin(library)
-    within(abs(found / critical_spin(exact.TORUS) - 1), 3e-9, "critical spin")
-    beyond(abs(found / critical_spin(Wheel(r=0.0)) - 1), 0.05, "critical spin")  # the thin disc's formula
+    within(abs(found / critical_spin(exact.TORUS) - 1), 3e-9, "critical spin, relative")
+    beyond(abs(found / critical_spin(Wheel(r=0.0)) - 1), 0.05, "critical spin by the thin disc's formula, relative")
     lever = ((exact.TORUS.r_0 + exact.TORUS.r) / exact.TORUS.r_0) ** 0.5  # the weight's lever taken as r_0 + r
-    beyond(abs(found / (lever * critical_spin(exact.TORUS)) - 1), 0.05, "critical spin, 2")
+    beyond(abs(found / (lever * critical_spin(exact.TORUS)) - 1), 0.05, "critical spin by that lever, relative")

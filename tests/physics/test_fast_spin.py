@@ -28,11 +28,11 @@ def test_the_error_of_a_second_stays_below_a_hundred_tolerances_of_the_range(lib
         return range_error(found, true, STATES) / tolerance
 
     true = motion((2, 4), 1e-13)
-    within(error(1e-8, motion((3, 4), 1e-13)), BOUND / 5, "error")  # rounding grows with the spin
+    within(error(1e-8, motion((3, 4), 1e-13)), BOUND / 5, "rounding, tolerances of the range")  # grows with the spin
     for tolerance in (1e-8, 1e-5):
         for kind in KINDS:
-            within(error(tolerance, motion(kind, tolerance)), BOUND, "error, 2")
-    beyond(error(1e-8, motion((2, 4), 1e-8, lean=1.4 + 1e-5)), 3000, "error")  # the partner
+            within(error(tolerance, motion(kind, tolerance)), BOUND, "error, tolerances of the range")
+    beyond(error(1e-8, motion((2, 4), 1e-8, lean=1.4 + 1e-5)), 3000, "error at another lean, tolerances of the range")
 
 
 @pytest.mark.parametrize("method", [2, 4])

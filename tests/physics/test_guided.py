@@ -56,8 +56,8 @@ def test_friction_and_brake_together_stop_it_and_hold_it(library: Library, formu
         assert not run["omega_z"][2:].any()
         return absolute_error([*run["omega_z"][1:2], *run["X_O"][2:]], [spin / 2, way, way])
 
-    within(error(1.0), 1e-9, "spin half-way, rad/s, and way, m")
-    beyond(error(1.0001), 1e-5, "with 0.01 % more friction")
+    within(error(1.0), 1024 * 8 * EPSILON, "spin half-way, rad/s, and way, m")
+    beyond(error(1.0001), 1e-5, "spin and way with 0.01 % more friction")
 
 
 @formulations
@@ -80,13 +80,13 @@ def test_loads_move_it_along_its_heading_and_the_carrier_takes_the_rest(
         spin = absolute_error(run["omega_z"], -30.0 + want["omega_z_dot"] * np.array(times))
         return max(spin, *(absolute_error(run[name], value) for name, value in want.items()))
 
-    within(error(), 1e-9, "error")  # N, N m and others
-    beyond(error(**FREE), 1.0, "of the wheel that is not guided")
+    within(error(), 1e-9, "reactions, N, N m, angles, rad, and rates")
+    beyond(error(**FREE), 1.0, "reactions and angles of the wheel that is not guided")
 
 
 def test_it_leans_at_rest_on_the_moment_of_its_weight(library: Library) -> None:
     run = guided(library, [0.0, 60.0], theta_start=CAMBER, **STOPPED)
-    within(absolute_error(run["M_guide_1"], M * G * R_0 * cos(CAMBER)), 1e-12, "M_guide_1, N m")
+    within(absolute_error(run["M_guide_1"], M * G * R_0 * cos(CAMBER)), 64 * 10 * EPSILON, "M_guide_1, N m")
     assert not run["M_guide_2"].any() and not run["omega_z"].any()
     free = library.simulate([0.0, 0.5], theta_start=CAMBER, **STOPPED)
     assert not free["M_guide_1"].any() and not free["M_guide_2"].any()
@@ -117,7 +117,7 @@ def test_locked_it_stops_after_v_squared_over_2_mu_g_and_stands_for_ever(library
     road = {"mu_max": 0.45, "mu_slide": 0.4, "slip_x_start": 7.0, "formulation": formulation, **STOPPED}
     run = guided(library, times, {"M_brake": 1e3}, 1e-11, **road)
     assert run["contact_mode"].tolist() == [1, 1, 1, 0, 0]
-    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-9, "way, m")
+    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-11, "way, m")
     still = ("X_O_dot", "Y_O_dot", "omega_z", "theta_dot", "psi_dot", "slip_x", "slip_y")
     assert all(run[name][4] == 0 for name in still) and not run["psi"].any() and not np.ptp(run["theta"])
     free = library.simulate([0.0, t + 2], 1e-11, LOCK, **{**UPRIGHT, **road, "theta_start": pi / 2 + 1e-3})
@@ -137,8 +137,8 @@ def test_thrown_with_backspin_it_slides_grips_and_comes_back(library: Library, t
         way = v * t - mu * G * t**2 / 2
         return absolute_error([run["X_O"][-1] - way - v_grip, run["X_O_dot"][-1]], [0.0, v_grip])
 
-    within(error(mu), 1e-9, "way, m, and velocity, m/s")
-    beyond(error(mu * 1.001), 1e-5, "with a coefficient 0.1 % larger")
+    within(error(mu), 1e-11, "way, m, and velocity, m/s")
+    beyond(error(mu * 1.001), 1e-5, "way and velocity with a coefficient 0.1 % larger")
 
 
 @tilts
@@ -148,7 +148,7 @@ def test_a_slip_across_the_heading_ends_in_a_straight_line(library: Library, the
     road = {"theta_start": theta, "mu_max": 0.4, "mu_slide": 0.4, "slip_y_start": 2.0, **STOPPED}
     run = guided(library, times, **road)
     within(absolute_error(run["Y_O"], 2.0 * np.minimum(times, 2 / 3.924) - 1.962 * np.minimum(times, 2 / 3.924) ** 2),
-           1e-9, "way, m")  # fmt: skip
+           4096 * EPSILON, "way, m")  # fmt: skip
     within(absolute_error(run["slip_x"], 0.0), 2 * EPSILON, "slip along the heading, m/s")  # cos(90 deg)
     assert not run["psi_dot"].any() and not run["theta_dot"].any()
 
@@ -165,8 +165,9 @@ def test_on_a_hill_it_rolls_up_to_a_slope_and_slides_above(library: Library, the
     run = guided(library, [0.0, 0.5, 1.0], theta_start=theta, **road, **STOPPED)
     assert run["contact_mode"].tolist() == [int(share > 1)] * 3
     down = run["X_O"] * cos(0.7) + run["Y_O"] * sin(0.7)
-    within(absolute_error(down, a / 2 * run.t**2), 1e-9, "way, m")
-    within(absolute_error(run["omega_z"], -spin * run.t), 1e-9, "spin, rad/s")
+    bound = 1e-11 if share > 1 else 1024 * EPSILON
+    within(absolute_error(down, a / 2 * run.t**2), bound, "way, m")
+    within(absolute_error(run["omega_z"], -spin * run.t), bound, "spin, rad/s")
     beyond(abs(rolling - sliding), 1e-3, "difference of the accelerations, m/s2")
 
 
@@ -177,7 +178,8 @@ def test_a_motor_spins_it_only_beyond_the_torque_that_the_road_holds(library: Li
     a = mu * G if excess > 1 else R * torque / inertia(pi / 2)
     spin = (torque - mu * M * G * R) / J_Z if excess > 1 else a / R
     run = guided(library, [0.0, 1.0], {"M_3": -torque}, mu_max=mu_max, mu_slide=mu, **STOPPED)
-    within(absolute_error([run["X_O_dot"][-1], run["omega_z"][-1]], [a, -spin]), 1e-9, "velocity, m/s, and spin, rad/s")
+    bound = 3e-11 if excess > 1 else 1024 * EPSILON
+    within(absolute_error([run["X_O_dot"][-1], run["omega_z"][-1]], [a, -spin]), bound, "speed, m/s, and spin, rad/s")
 
 
 def test_it_does_not_jam_where_tilting_is_what_wedges(library: Library) -> None:
@@ -194,11 +196,11 @@ def test_a_load_lifts_it_off_and_a_ground_that_pulls_keeps_it_without_friction(l
     start = {"theta_start": CAMBER, "phi_dot_start": -10.0, "s": 0.02}
     ended = guided(library, [0.0, 2.0], lift, **start)
     assert ended.ended is not None and "lifted off" in ended.ended
-    within(abs(ended.t[-1] - 1.0), 1e-8, "instant, s")
+    within(abs(ended.t[-1] - 1.0), 1e-8, "instant at which it lifts off, s")
     kept = guided(library, [0.0, 1.0, 2.0], lift, **start, keep_contact=True)
     lost = 0.02 * M * G * 0.5 / inertia(CAMBER)
-    within(absolute_error(kept["omega_z"][1:], -10.0 + lost), 1e-9, "spin, rad/s")
-    within(absolute_error(kept["lambda_3"], M * G * (1 - kept.t)), 1e-10, "N")
+    within(absolute_error(kept["omega_z"][1:], -10.0 + lost), 64 * 10 * EPSILON, "spin, rad/s")
+    within(absolute_error(kept["lambda_3"], M * G * (1 - kept.t)), 16 * M * G * EPSILON, "normal force, N")
 
 
 # ---- the limits that it is ----
@@ -224,9 +226,9 @@ def test_infinite_inertia_across_the_axle_is_its_limit(library: Library) -> None
         return max(absolute_error(free[name], want[name]) for name in names)
 
     errors = [error(times_J) for times_J in (1e4, 1e5, 1e6)]
-    within(errors[-1], 1e-3, "difference at a million J_x")
-    within(abs(rising(errors, 10) - 1), 0.1, "order - 1")
-    beyond(error(1), 1.0, "difference at J_x")
+    within(errors[-1], 1e-3, "outputs of a million J_x, SI")
+    within(abs(rising(errors, 10) - 1), 2e-3, "order of convergence less 1")
+    beyond(error(1), 1.0, "outputs of the usual J_x, SI")
 
 
 def sprung(library: Library, stiffness: float) -> np.ndarray:
@@ -256,8 +258,8 @@ def test_springs_on_lean_and_yaw_lead_to_it_as_they_stiffen(library: Library) ->
     want = np.array([run[name][-1] for name in names])
     errors = [np.abs(sprung(library, stiffness) - want) for stiffness in (1e4, 1e5, 1e6)]
     for k, name in enumerate(names):
-        within(abs(rising([error[k] for error in errors], 10) - 1), 0.2, f"order of {name} - 1")
-    within(float(errors[-1].max()), 1e-2, "difference at 1e6 N m/rad")
+        within(abs(rising([error[k] for error in errors], 10) - 1), 0.2, f"order of {name} less 1")
+    within(float(errors[-1].max()), 1e-2, "way, m, spin, rad/s, and moments at 1e6 N m/rad, N m")
 
 
 # ---- power, rates, the other formulation, model exchange ----
@@ -285,9 +287,9 @@ def test_the_power_of_loads_slip_and_friction_changes_its_energy(library: Librar
         power += slips * (run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"])
         return abs(float(simpson(power, x=times)) - (run["E"][-1] - run["E"][0]))
 
-    within(error(1), 1e-8, "imbalance, J")
+    within(error(1), 1e-8, "energy off the work, J")
     if "mu_max" in start:
-        beyond(error(0), 1.0, "imbalance without the slip, J")
+        beyond(error(0), 1.0, "energy off the work without the slip's, J")
 
 
 @surfaces
@@ -299,8 +301,8 @@ def test_the_rates_of_the_carriers_moment_are_those_of_its_course(library: Libra
     for name in names:
         before_2, before, _, after, after_2 = run[name][1:]
         course = (8 * (after - before) - (after_2 - before_2)) / (12 * h)
-        within(abs(run[f"{name}_dot"][3] - course), 1e-6, f"rate of {name}, N m/s")
-        beyond(abs(course), 0.1, f"rate of {name}, N m/s")
+        within(abs(run[f"{name}_dot"][3] - course), 1e-9, f"rate of {name}, N m/s")
+        beyond(abs(course), 0.1, f"rate of {name} at all, N m/s")
 
 
 @surfaces
@@ -310,12 +312,13 @@ def test_the_carriers_moment_answers_each_load_as_equilibrium_asks(library: Libr
     with library.wheel() as w:
         w.start(tolerance=1e-10, **{**UPRIGHT, "guided": True, **start}, M_3=-2.0)
         slopes = w.jacobian(("M_guide_1", "M_guide_2"), loads)
-        within(absolute_error(slopes[:, 3:5], -np.eye(2)), 1e-12, "derivative by M_1, M_2")
+        within(absolute_error(slopes[:, 3:5], -np.eye(2)), 64 * EPSILON, "derivative by M_1, M_2 off -1")
         before = np.array(w.get("M_guide_1", "M_guide_2"))
         for k, load in enumerate(loads):
             value = w.get(load)[0]
             assert w.set(**{load: value + 1.0}) == OK
-            within(absolute_error(np.array(w.get("M_guide_1", "M_guide_2")) - before, slopes[:, k]), 1e-10, load)
+            change = np.array(w.get("M_guide_1", "M_guide_2")) - before
+            within(absolute_error(change, slopes[:, k]), 64 * 60 * EPSILON, f"moments by {load}, N m")
             assert w.set(**{load: value}) == OK
         at_start = library.wheel().initializing(**{**UPRIGHT, "guided": True, **start})
         assert not at_start.jacobian(("M_guide_1", "X_O_dot"), ("theta_dot_start", "psi_dot_start")).any()
@@ -329,9 +332,10 @@ def test_the_papers_system_with_two_constraints_more_agrees(library: Library, st
         guided(library, times, PUSH, 1e-11, **{**start, **change})
         for change in ({"formulation": 2}, {"formulation": 3}, {"J_z": 1.801})
     )
-    within({name: absolute_error(a[name], b[name]) for name in names}, 1e-8, "difference")
+    bound = 1e-9 if start is SURFACES["slides"] else 64 * 200 * EPSILON  # N
+    within({name: absolute_error(a[name], b[name]) for name in names}, bound, "formulations apart, SI")
     assert not b["theta_dot"].any() and not b["psi_dot"].any() and not np.ptp(b["psi"])
-    beyond(absolute_error(off["omega_z"], a["omega_z"]), 1e-4, "difference with another J_z, rad/s")
+    beyond(absolute_error(off["omega_z"], a["omega_z"]), 1e-4, "omega_z with another J_z, rad/s")
 
 
 def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) -> None:
@@ -344,11 +348,11 @@ def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) 
 
     done = solve_ivp(rate, (0, 1), wheel.x(), "DOP853", rtol=1e-11, atol=1e-11)
     run = guided(library, [0.0, 1.0], {"F_X": 3.0, "F_Y": 20.0}, theta_start=CAMBER, phi_dot_start=-10.0)
-    within(absolute_error(done.y[:, -1], [run[name][-1] for name in STATES]), 1e-9, "states")
+    within(absolute_error(done.y[:, -1], [run[name][-1] for name in STATES]), 64 * 10 * EPSILON, "states, SI")
     assert [bool(np.ptp(row)) for row in done.y] == [name in ("X_O", "phi", "omega_z") for name in STATES]
     wheel.place(1.0, done.y[:, -1])
-    within(absolute_error(wheel.get("M_guide_1", "M_guide_2"), [run[n][-1] for n in ("M_guide_1", "M_guide_2")]), 1e-9,
-           "moment, N m")  # fmt: skip
+    want = [run[name][-1] for name in ("M_guide_1", "M_guide_2")]
+    within(absolute_error(wheel.get("M_guide_1", "M_guide_2"), want), 64 * 10 * EPSILON, "carrier's moment, N m")
 
 
 @pytest.mark.parametrize("name", ["theta_dot_start", "psi_dot_start"])

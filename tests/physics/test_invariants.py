@@ -20,9 +20,9 @@ def chaplygin_gap(library: Library, judged: Wheel, s: float = 0.0) -> float:
 
 
 def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_system(library: Library) -> None:
-    within(chaplygin_gap(library, Wheel()), 2e-10, "chaplygin gap")  # rad/s
-    beyond(chaplygin_gap(library, replace(Wheel(), r=0.05 * (1 + 1e-5))), 1e-7, "chaplygin gap")
-    beyond(chaplygin_gap(library, Wheel(), s=1e-7), 4e-6, "chaplygin gap, 2")  # friction leaves the curve
+    within(chaplygin_gap(library, Wheel()), 1e-11, "omega_2, omega_3 carried back, rad/s")
+    beyond(chaplygin_gap(library, replace(Wheel(), r=0.05 * (1 + 1e-5))), 1e-7, "those with another r, rad/s")
+    beyond(chaplygin_gap(library, Wheel(), s=1e-7), 4e-6, "those with friction, rad/s")  # friction leaves the curve
 
 
 TIMES = np.linspace(0, 10, 201)
@@ -30,10 +30,10 @@ TIMES = np.linspace(0, 10, 201)
 
 def test_the_reduced_formulation_cannot_leave_its_constraints(library: Library) -> None:
     velocity, height = constraint_drift(library, TIMES, None)
-    within(height.max(), 16 * EPSILON, "height")  # m
-    within(velocity.max(), 64 * EPSILON, "velocity")  # m/s
+    within(height.max(), 16 * EPSILON, "height off the contact, m")
+    within(velocity.max(), 64 * EPSILON, "velocity of the contact, m/s")
     multibody = constraint_drift(library, TIMES, None, formulation=3)
-    beyond(max(multibody[0].max(), multibody[1].max()), 1e-10, "multibody")
+    beyond(max(multibody[0].max(), multibody[1].max()), 1e-10, "drift of the multibody form, m, m/s")
 
 
 DRIFT = {tolerance: tolerance + 4096 * EPSILON for tolerance in (1e-6, 1e-8, 1e-10, 1e-12)}  # m, m/s
@@ -46,7 +46,7 @@ def test_the_drift_of_the_multibody_formulation_stays_small_and_falls_with_the_t
 
     found = {tolerance: drift(tolerance) for tolerance in DRIFT}
     for tolerance, bound in DRIFT.items():
-        within(found[tolerance], bound, f"drift at {tolerance:g}")
+        within(found[tolerance], bound, f"drift at {tolerance:g}, m, m/s")
     for coarse, fine in pairwise(DRIFT):
         within(found[fine] / found[coarse], 0.1, "drift over that of a tolerance a hundred times as large")
-    beyond(drift(1e-4), DRIFT[1e-6], "drift at a tolerance of 1e-4")
+    beyond(drift(1e-4), DRIFT[1e-6], "drift at a tolerance of 1e-4, m, m/s")

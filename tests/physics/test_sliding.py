@@ -11,7 +11,7 @@ import pytest
 from reference import Start, Wheel
 from reference.judge import carrier_axes, momenta
 from support import sliding
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.closed_forms import circle_spin
 from support.driver import DISCARD, ERROR, OK
 from support.motion import Library, Run, start_values
@@ -46,10 +46,12 @@ def test_a_locked_wheel_stops_after_v_squared_over_2_mu_g_and_stays(library: Lib
     run = straight(library, times, LOCK, slip_x_start=7.0)
     assert run["contact_mode"].tolist() == [1, 1, 1, 0, 0]
     assert not run["omega_z"].any() and not run["slip_x"][3:].any()
-    within(absolute_error(run["X_O_dot"][3:], 0), 1e-15, "velocity after the stop, m/s")
-    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-9, "way, m")
-    within(absolute_error(run["lambda_x"][:2], -0.4 * PAPER.m * PAPER.g), 1e-9, "force of the road, N")
-    within(absolute_error(run["tau"][:2], 0.4 * PAPER.m * PAPER.g * R), 1e-9, "moment of the brake, N m")
+    tipping = np.abs(run["psi"] * run["Y_O_dot"])[3:].max()  # by the rounding of 90 deg; the wheel turns a little
+    within(absolute_error(run["X_O_dot"][3:], 0), 2 * tipping + EPSILON**2, "velocity after the stop, m/s")
+    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-11, "way, m")
+    force = 0.4 * PAPER.m * PAPER.g
+    within(absolute_error(run["lambda_x"][:2], -force), 64 * force * EPSILON, "force of the road, N")
+    within(absolute_error(run["tau"][:2], R * force), 32 * R * force * EPSILON, "moment of the brake, N m")
     free = straight(library, times, slip_x_start=7.0)
     beyond(free["X_O"][-1] / way, 1.1, "way of the wheel that is not locked, relative")
 
@@ -68,8 +70,8 @@ def test_a_wheel_thrown_with_backspin_slides_grips_and_comes_back(library: Libra
         return absolute_error(after, 0.0)
 
     assert v < 0
-    within(error(mu), 1e-9, "velocity, spin and place")
-    beyond(error(mu * 1.001), 1e-5, "with a coefficient 0.1 % larger")
+    within(error(mu), 1e-10, "velocity, m/s, spin, rad/s, and place, m")
+    beyond(error(mu * 1.001), 1e-5, "those with a coefficient 0.1 % larger")
 
 
 @pytest.mark.parametrize("excess", [1.0001, 1.5])
@@ -83,7 +85,7 @@ def test_a_motor_spins_the_wheel_only_beyond_the_torque_that_the_road_can_hold(l
     run = drive(excess * limit)
     assert run["contact_mode"].tolist() == [1, 1, 1]
     found = run["X_O_dot"][1:], run["omega_z"][1:], run["slip_x"][1:]
-    within(absolute_error(np.array(found).T, np.outer([0.5, 1], [a, spin, a + R * spin])), 1e-9, "velocity, spin, slip")
+    within(absolute_error(np.array(found).T, np.outer([0.5, 1], [a, spin, a + R * spin])), 3e-11, "speeds, SI")
     rolls = drive(limit / 1.0001)
     assert not rolls["contact_mode"].any() and not rolls["slip_x"].any()
     beyond(abs(rolls["omega_z"][-1] - spin), 0.3, "spin below the limit, rad/s")
@@ -114,9 +116,9 @@ def test_on_a_slope_the_wheel_rolls_up_to_its_limit_and_slides_above(library, sh
         a, spin = sliding.downhill(PAPER, mu_slide, slope, judged)
         return max(abs(run["X_O_dot"][-1] - a), abs(run["omega_z"][-1] + spin))
 
-    within(error(slides), 1e-9, "velocity and spin after 1 s")
+    within(error(slides), 1e-11, "velocity, m/s, and spin after 1 s, rad/s")
     if mu_slide < 0.2:
-        beyond(error(not slides), 0.3, "by the other closed form")
+        beyond(error(not slides), 0.3, "velocity and spin off the other closed form")
 
 
 def test_a_locked_wheel_stays_on_a_slope_up_to_mu_max_and_slides_down_above(library: Library) -> None:
@@ -125,10 +127,10 @@ def test_a_locked_wheel_stays_on_a_slope_up_to_mu_max_and_slides_down_above(libr
 
     above, below = on(np.arctan(0.4501)), on(np.arctan(0.4499))
     assert below["contact_mode"].tolist() == [GRIPS] * 2
-    within(abs(below["X_O"][-1]), 1e-14, "way of the wheel that grips, m")
+    within(abs(below["X_O"][-1]), EPSILON**2, "way of the wheel that grips, m")  # cos(90 deg) twice
     a = PAPER.g * (sin(np.arctan(0.4501)) - 0.4 * cos(np.arctan(0.4501)))
     assert above["contact_mode"].tolist() == [SLIDING] * 2
-    within(abs(above["slip_x"][-1] - a), 1e-9, "slip after 1 s, m/s")
+    within(abs(above["slip_x"][-1] - a), 3e-12, "slip after 1 s, m/s")
 
 
 def test_a_steady_circle_slides_outwards_where_the_road_gives_less_than_psi_dot_v_over_g(library: Library) -> None:
@@ -145,7 +147,7 @@ def test_a_steady_circle_slides_outwards_where_the_road_gives_less_than_psi_dot_
     slides, grips = after(1 - 1e-6), after(1 + 1e-6)
     assert slides["contact_mode"][:2].tolist() == [SLIDING] * 2 and not grips["contact_mode"].any()
     assert slides["slip_y"][1] * slides["lambda_y"][0] < 0  # off the force that pulls inwards
-    within(absolute_error(grips["theta"], theta), 1e-9, "lean of the wheel that grips, rad")
+    within(absolute_error(grips["theta"], theta), 64 * EPSILON, "lean of the wheel that grips, rad")
     beyond(absolute_error(slides["theta"], theta), 1e-3, "lean of the wheel that slides, rad")
 
 
@@ -162,7 +164,7 @@ def test_the_road_pushes_against_the_slip_with_mu_slide_N_or_holds_with_at_most_
     assert slides.any() and set(run["contact_mode"]) <= {0, 1}
     assert (speed[~slides] == 0).all() and (speed[slides] > 0).sum() >= slides.sum() - 1  # the instant of the loss
     off = force[:, slides] * speed[slides] + scene.road.mu_slide * np.maximum(N, 0)[slides] * slip[:, slides]
-    within(np.abs(off / N[slides]).max(), 1e-12, "force beside friction, times slip over N, m/s")
+    within(np.abs(off / N[slides]).max(), 128 * EPSILON, "force off friction, times slip over N, m/s")
     within((run["mu_required"][~slides] / scene.road.mu_max).max(initial=0.0), 1 + 1e-8, "mu_required over mu_max")
 
 
@@ -180,23 +182,12 @@ def test_with_hardly_any_friction_the_sliding_disc_keeps_its_momenta(library: Li
         kept = np.column_stack([p[:, :2], L[:, 2], np.sum(L * e3, axis=1), run["E"]])
         return absolute_error(kept, kept[0])
 
-    within(change(1e-11), 1e-7, "change of what is conserved")
-    beyond(change(1e-3), 1e-2, "change with a coefficient of 1e-3")
-    beyond(change(1e-11, Wheel(r=r, J_x=0.91, J_y=0.91)), 1e-3, "change judged by another inertia")
+    within(change(1e-11), 1e-7, "change of momenta, N s, N m s, and energy, J")
+    beyond(change(1e-3), 1e-2, "change of those with a coefficient of 1e-3")
+    beyond(change(1e-11, Wheel(r=r, J_x=0.91, J_y=0.91)), 1e-3, "change of those judged by another inertia")
 
 
 # ---- the independent reference ----
-
-
-@all_slides
-@pytest.mark.parametrize("formulation", [2, 3])
-def test_every_output_agrees_with_the_independent_reference(library: Library, name: str, formulation: int) -> None:
-    scene = SLIDES[name]
-    within(error(library, scene, 1e-11, 1.0, formulation=formulation), 1e-7, "error")
-    mu = scene.road.mu_slide * (1 - 1e-4)
-    beyond(
-        error(library, scene, 1e-11, 1.0, formulation=formulation, mu_slide=mu), 1e-6, "error with another coefficient"
-    )
 
 
 def growth(library: Library, scene: Scene) -> float:
@@ -213,14 +204,14 @@ def growth(library: Library, scene: Scene) -> float:
 
 
 @all_slides
-def test_the_error_of_a_slide_stays_below_three_tolerances(library: Library, name: str) -> None:
-    """Where an error of the start grows more than a hundredfold, by so much more."""
+def test_the_error_of_every_output_of_a_slide_stays_below_three_tolerances(library: Library, name: str) -> None:
+    """Where an error of the start grows more than a hundredfold, by so much more. At 1e-11 the reference's counts."""
     scene = SLIDES[name]
-    bound = 3 * max(1.0, growth(library, scene) / 100)
+    grown = max(1.0, growth(library, scene) / 100)
     for formulation in (2, 3):
-        for tolerance in (1e-5, 1e-8, 1e-10):
+        for tolerance, most in ((1e-5, 3), (1e-8, 3), (1e-10, 3), (1e-11, 10)):
             off = error(library, scene, tolerance, 1.0, formulation=formulation)
-            within(off / tolerance, bound, f"error over the tolerance {tolerance:g} of formulation {formulation}")
+            within(off / tolerance, most * grown, f"error of formulation {formulation}, in tolerances of {tolerance:g}")
     slower = {"mu_slide": scene.road.mu_slide * (1 - 1e-6)}
     beyond(error(library, scene, 1e-10, 1.0, **slower) / 1e-10, 100, "error with another coefficient, in tolerances")
 
@@ -280,7 +271,7 @@ def test_random_wheels_on_random_roads_follow_the_reference(library: Library) ->
             worst = max(worst, off / max(1.0, growth / 1e-9))
         judged, transitions = judged + 1, transitions + len(want.contacts) - 1
     assert judged >= 12 and transitions >= 15, (judged, transitions)
-    within(worst, 1e-7, "error over growth")
+    within(worst, 1e-10, "error over growth, relative")
 
 
 # ---- cost ----
@@ -305,7 +296,7 @@ def test_friction_jams_a_wheel_that_it_rights_and_the_run_ends_there(library: Li
     assert ended and ended.kind == "jams"
     run = simulate(library, scene, [0.0, scene.duration])
     assert run.end is not None and "jam" in str(run.ended)
-    within(abs(run.end - ended.time), 1e-6, "instant, s")  # N grows without bound there
+    within(abs(run.end - ended.time), 1e-6, "instant of the jam, s")  # N grows without bound there
     light = simulate(library, scene, [0.0, scene.duration], mu_slide=0.4, mu_max=0.4)  # below 2 sqrt(0.05 * 1.05)
     assert light.end is None
 
@@ -332,7 +323,7 @@ def test_a_sliding_wheel_lifts_off_and_falls_flat_at_the_references_instants(lib
     run = simulate(library, scene, [0.0, 3.0])
     assert run.end is not None and kind in str(run.ended).replace("-", " ").lower()
     assert run["contact_mode"][-1] == SLIDING
-    within(abs(run.end - ended.time), 1e-8, "instant, s")
+    within(abs(run.end - ended.time), 1e-8, "instant of the ending, s")
     rolling = library.simulate([0.0, 3.0], 1e-10, **{k: v for k, v in start.items() if k[:2] not in ("mu", "sl")})
     beyond(abs((rolling.end or 3.0) - ended.time), 1e-4, "instant of the wheel that rolls, s")
 
@@ -408,9 +399,9 @@ def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float
     ended = scene.solved([0.0, 0.4]).ended
     run = simulate(library, scene, [0.0, 0.4], tolerance, formulation=formulation)
     assert ended and ended.kind == "jams" and run.end is not None and "jam" in str(run.ended)
-    within(abs(run.end - ended.time) / tolerance, 1e3, "instant over tolerance, s")
+    within(abs(run.end - ended.time), 3e-3 * tolerance + 4096 * EPSILON, "instant of the jam, s")
     other = simulate(library, scene, [0.0, 0.4], mu_slide=4.04).end or 0
-    beyond(abs(other - ended.time), 1e-4, "with 1 % more friction, s")
+    beyond(abs(other - ended.time), 1e-4, "instant with 1 % more friction, s")
 
 
 @pytest.mark.parametrize(("start", "brake"), [
@@ -423,8 +414,8 @@ def test_a_stiff_law_in_a_slide_is_solved_in_some_thousand_steps(library: Librar
     held = library.simulate([0.0, 1.0], 1e-6, braked, **{**start, "omega_s": 1.0})
     run = library.simulate([0.0, 1.0], 1e-6, braked, friction_law="regularized", **start)
     assert (run["contact_mode"] == SLIDING).any()
-    within(run.counters["n_steps"], 2e4, "steps")
-    within(abs(run["theta"][-1] - held["theta"][-1]), 1e-2, "lean apart from that under the exact law, rad")
+    within(run.counters["n_steps"], 2e4, "number of steps")
+    within(abs(run["theta"][-1] - held["theta"][-1]), start["omega_s"] + 1e-5, "lean off that under the exact law, rad")
 
 
 def test_a_slip_that_falls_at_forty_times_g_ends_at_the_references_instants(library: Library) -> None:
@@ -463,7 +454,7 @@ def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_e
         assert wheel.get("contact_mode") == [SLIDING]
     slowing = -np.diff(speeds) / 0.2 / PAPER.g
     hill = [0.15 * cos(0.3) + sin(0.3), 0.15 * cos(0.3) - sin(0.3)]
-    within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 1e-9, "deceleration over g")
+    within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 4096 * EPSILON, "deceleration over g")
 
 
 @pytest.mark.parametrize("when", ["initializing", "at the start", "by parameters"])
@@ -505,10 +496,10 @@ def test_a_wheel_that_can_slide_has_no_friction_at_all_where_mu_max_becomes_zero
     """As in the limit of small coefficients. On the road behind the ice it slows down as before it."""
     free, least = 40 * R + start.get("slip_x_start", 0.0), speed_after(library, before, {"mu_max": 1e-9}, **start)
     rolls = 0.4 * PAPER.g * before if "slip_x_start" in start else 0.0
-    within(abs(speed_after(library, before, ice, **start) - least), 1e-8, "speed, m/s")
-    within(abs(least + rolls - free), 1e-2, "speed lost on ice, m/s")
+    within(abs(speed_after(library, before, ice, **start) - least), 1e-8, "speed off that on the least friction, m/s")
+    within(abs(least + rolls - free), 2 * 1e-9 * PAPER.g * 0.2, "speed lost on the least friction, m/s")
     slower = speed_after(library, before, ice, ROAD, **start)
-    within(abs(least - slower - 0.4 * PAPER.g * 0.2), 1e-6, "speed lost behind the ice, m/s")
+    within(abs(least - slower - 0.4 * PAPER.g * 0.2), 1e-8, "speed lost behind the ice, m/s")
 
 
 @pytest.mark.parametrize("ice", ICE)
@@ -517,7 +508,7 @@ def test_on_ice_a_wheel_grips_only_while_it_needs_no_force_and_a_driven_one_slip
         wheel.start(**{**UPRIGHT, **ROAD, "phi_dot_start": -2.0}).put(**ice).to(0.5)
         assert wheel.get("contact_mode", "slip_x", "omega_z") == [GRIPS, 0.0, -2.0]
         wheel.put(M_3=-0.9).to(0.7)
-        within(abs(wheel.get("omega_z")[0] + 2 + 0.9 * 0.2 / PAPER.J_z), 1e-8, "omega_z, rad/s")
+        within(abs(wheel.get("omega_z")[0] + 2 + 0.9 * 0.2 / PAPER.J_z), 512 * EPSILON, "omega_z, rad/s")
         assert wheel.get("contact_mode", "lambda_x") == [SLIDING, 0.0]
 
 
@@ -525,7 +516,7 @@ def test_the_paper_s_wheel_loses_no_energy_on_ice(library: Library) -> None:
     with library.wheel() as wheel:
         before = wheel.start(**ROAD).to(0.3).get("E")[0]
         wheel.put(mu_max=0.0).to(0.5)
-        within(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy, relative")
+        within(abs(wheel.get("E")[0] / before - 1), 1e-10, "change of the energy, relative")
         assert wheel.get("contact_mode", "lambda_1", "lambda_2") == [SLIDING, 0.0, 0.0]
         wheel.back(wheel.serialized()).put(mu_max=0.01).to(0.7)
         beyond(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy on mu_max = 0.01, relative")

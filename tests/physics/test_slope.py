@@ -32,8 +32,8 @@ def rolled(library: Library, formulation: int, slope: float, s: float) -> float:
 
 @pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
 def test_a_wheel_rolls_straight_down_with_uniform_acceleration(library: Library, formulation: int, s: float) -> None:
-    within(rolled(library, formulation, 0.2, s), 128 * EPSILON, "way")
-    beyond(rolled(library, formulation, 0.2 * (1 + 1e-8), s), 1e-9, "way on a steeper road")
+    within(rolled(library, formulation, 0.2, s), 128 * EPSILON, "way, relative")
+    beyond(rolled(library, formulation, 0.2 * (1 + 1e-8), s), 1e-9, "way on a steeper road, relative")
 
 
 @pytest.mark.parametrize("s", [0.01, 0.03])
@@ -41,7 +41,8 @@ def test_a_wheel_set_down_stays_exactly_while_the_rolling_friction_can_hold_it(l
     steepest = atan(s / R)
     stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), s=s, **REST)
     assert (stays["omega_z"] == 0).all()
-    within(np.abs(stays["X_O"]).max(), EPSILON, "creep, m")
+    tipping = np.abs(stays["psi"] * stays["Y_O"]).max()  # by the rounding of 90 deg; the wheel turns a little
+    within(np.abs(stays["X_O"]).max(), tipping + EPSILON**2, "creep, m")
     rolls = library.simulate([0.0, 5.0], slope=steepest * (1 + 1e-9), s=s, **REST)
     assert rolls["X_O"][-1] < 0 and rolls["friction_mode"][-1] == 1  # downhill, away from X
 
@@ -60,7 +61,7 @@ def parked(library: Library, slope: float, seconds: float) -> float:
 
 def test_a_brake_holds_exactly_up_to_its_capacity_and_lets_go_beyond(library: Library) -> None:
     steepest = np.arcsin(20.0 / (R * WEIGHT))
-    within(abs(parked(library, steepest * (1 - 1e-9), 600.0)), EPSILON, "creep, m")  # in ten minutes
+    within(abs(parked(library, steepest * (1 - 1e-9), 600.0)), 64 * EPSILON**2, "creep, m")  # in ten minutes
     beyond(-parked(library, steepest * (1 + 1e-6), 5.0), 2e-6, "way beyond the capacity, m")
 
 
@@ -87,8 +88,8 @@ def reference_gap(library: Library, seed: int, formulation: int) -> tuple[float,
 @pytest.mark.parametrize("decade", range(4))
 def test_forty_random_slopes_agree_with_the_independent_reference(library: Library, decade: int) -> None:
     gaps = [reference_gap(library, 10 * decade + k, 2 + k % 2) for k in range(10)]
-    within(max(found for found, _ in gaps), 3e-10, "gap")
-    beyond(max(steeper for _, steeper in gaps), 1e-7, "gap to a steeper road")
+    within(max(found for found, _ in gaps), 3e-10, "distance from the reference, relative")
+    beyond(max(steeper for _, steeper in gaps), 1e-7, "distance from the reference on a steeper road, relative")
 
 
 def on_a_hill(library: Library, slope: float, **values: float) -> np.ndarray:
@@ -122,7 +123,8 @@ def test_a_parked_wheel_stays_while_the_road_tilts_and_rolls_where_it_tilts_too_
             for k, share in enumerate((0.3, 0.9, 1 - 1e-9, 0.0, 1 - 1e-9)):
                 wheel.put(slope=share * steepest, slope_direction=direction).to(k + 1.0)
             assert wheel.get("omega_z", "friction_mode") == [0.0, 0]
-            within(abs(wheel.get("X_O")[0]), EPSILON, "creep, m")
+            X_O, Y_O, psi = wheel.get("X_O", "Y_O", "psi")
+            within(abs(X_O), abs(psi * Y_O) + EPSILON**2, "creep, m")  # it tips by the rounding of 90 deg
             wheel.put(slope=steepest * (1 + 1e-6)).to(7.0)
             assert wheel.get("friction_mode") == [sense] and -sense * wheel.get("X_O")[0] > 0
 
@@ -154,15 +156,15 @@ def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Li
         E, place = wheel.get("E")[0], np.array(wheel.get("X_O", "Y_O", "Z_O"))
         change = gravity(0.6, -2.0) - gravity(values["slope"], values["slope_direction"])
         jump = wheel.put(slope=0.6, slope_direction=-2.0).get("E")[0] - E
-        within(abs(jump + body.m * change @ place) / E, 1e-13, "jump of the energy")
-        beyond(abs(jump) / E, 1e-4, "jump of the energy")
+        within(abs(jump + body.m * change @ place) / E, 32 * EPSILON, "jump of the energy less the weight's, relative")
+        beyond(abs(jump) / E, 1e-4, "jump of the energy, relative")
         pending = wheel.serialized()
         in_force = wheel.to(0.5).serialized()
         end = wheel.to(0.8).bits()
         for state, times in ((pending, (0.5, 0.8)), (in_force, (0.8,))):
             assert restored.back(state).to(*times).bits() == end
         fresh.start(tolerance=1e-11, **values | there | {"slope": 0.6, "slope_direction": -2.0}).to(0.4)
-        within(absolute_error(wheel.get(*names), fresh.get(*names)), 1e-8, "state")
+        within(absolute_error(wheel.get(*names), fresh.get(*names)), 1e-10, "state, m, rad, rad/s")
         fresh.put(slope=0.6 + 1e-5).to(0.5)
         beyond(absolute_error(wheel.to(0.9).get(*names), fresh.get(*names)), 1e-8, "state on a steeper road")
 

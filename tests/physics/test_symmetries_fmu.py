@@ -115,8 +115,8 @@ def test_the_motion_keeps_the_symmetries_of_plane_and_wheel(library: Library, na
         load = image_of_load(symmetry, moment)
         return difference(expected, library.simulate(TIMES, 1e-11, load, **{**image_of_start(symmetry), **inertia}))
 
-    within(gap(symmetry.moment), 1e-10, "gap")  # ten tolerances
-    beyond(max(gap(tuple(-sign for sign in symmetry.moment)).values()), 0.1, "gap")  # the moments mapped wrongly
+    within(gap(symmetry.moment), 1e-10, "motion off the image, relative")  # ten tolerances
+    beyond(max(gap(tuple(-sign for sign in symmetry.moment)).values()), 0.1, "with moments mapped wrongly")
 
 
 def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_at_the_start_does_not_matter(library: Library) -> None:
@@ -124,8 +124,8 @@ def test_with_equal_J_x_and_J_y_the_turn_phi_of_the_body_at_the_start_does_not_m
         a, b = (library.simulate(TIMES, **{**START, "phi_start": phi}, **inertia) for phi in (0.0, 0.7))
         return float(np.abs(a["theta"] - b["theta"]).max())
 
-    within(gap(), 2048 * EPSILON, "gap")  # rad: phi takes part in the choice of steps
-    beyond(gap(**UNEQUAL), 0.04, "gap")
+    within(gap(), 2048 * EPSILON, "tilts apart, rad")  # phi takes part in the choice of steps
+    beyond(gap(**UNEQUAL), 0.04, "tilts of unequal J_x and J_y apart, rad")
 
 
 LARGE = {"r_0": 1.2, "r": 0.2, "J_x": 14.4, "J_y": 14.4, "J_z": 28.8, "s": 0.12, "X_O_start": 0.8, "Y_O_start": -0.4}
@@ -148,7 +148,7 @@ def test_a_similar_wheel_moves_alike(library: Library, length: int, time: int, s
         return float(max(np.abs(x - y).max() for x, y in pairs))
 
     assert gap() <= most
-    beyond(gap(**off), least, "gap")
+    beyond(gap(**off), least, "motions of dissimilar wheels apart, rad, m, rad/s")
 
 
 def test_the_free_wheel_run_backwards_returns_to_its_start(library: Library) -> None:
@@ -162,5 +162,5 @@ def test_the_free_wheel_run_backwards_returns_to_its_start(library: Library) -> 
         names = ("X_O", "Y_O", "psi", "theta", "phi")
         return max(abs(end[name][-1] - START[f"{name}_start"]) for name in names)
 
-    within(gap(0.0), 1e-11, "gap")  # ten tolerances
-    beyond(gap(1e-6), 6e-5, "gap")  # friction has a direction of time
+    within(gap(0.0), 1e-12, "place, m, and angles off the start, rad")  # the tolerance
+    beyond(gap(1e-6), 6e-5, "place and angles off the start with friction")  # it has a direction of time

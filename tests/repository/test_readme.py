@@ -67,8 +67,8 @@ def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, ref
         assert picture.read_bytes().startswith(b"\x89PNG")
         picture.unlink()
         theta = np.load(root / "run.npy")["theta"][::10]
-        within(np.abs(theta - reference_tables[scene]["theta"]).max(), 1e-6, "error")
-        beyond(np.abs(theta - reference_tables[other]["theta"]).max(), 0.08, "theta")
+        within(np.abs(theta - reference_tables[scene]["theta"]).max(), 1e-6, "theta off the table, rad")
+        beyond(np.abs(theta - reference_tables[other]["theta"]).max(), 0.08, "theta off that of the other scene, rad")
 
 
 def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, reference_tables):
@@ -80,14 +80,14 @@ def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(roo
         assert word in log, word
     friction, reference = table(root / "results" / "friction_again.csv"), reference_tables["friction"]
     error = np.abs(friction["X_O"][::10] - reference["X_O"]).max()
-    within(error, 1e-6, "error")  # of 2 m, seen to six digits
-    beyond(np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max(), 0.1, "X_O")
+    within(error, 1e-6, "X_O off the table, m")
+    beyond(np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max(), 0.1, "X_O of the free wheel, m")
     energy = table(root / "results" / "energy.csv")
     assert energy.dtype.names == ("time", "theta", "E")
-    within(np.ptp(energy["E"]) / energy["E"][0], 2e-12, "E")  # the friction scene loses a quarter
+    within(np.ptp(energy["E"]) / energy["E"][0], 2e-12, "range of the energy, relative")  # friction takes a quarter
     fall = table(root / "results" / "fall.csv")
     assert round(fall["time"][-1], 2) == 0.59
-    within(fall["theta"][-1], 1e-6, "theta")
+    within(fall["theta"][-1], 1e-6, "least theta, rad")
     speeds_up_as_newton_says(table(root / "results" / "driven.csv"))
 
 
@@ -96,8 +96,8 @@ def speeds_up_as_newton_says(driven: np.ndarray) -> None:
     m, R, J_z, impulse = 20, 0.35, 1.8, 2 * (0.5 - late) + 2 * 9
     speed = R * impulse / (J_z + m * R * R)  # m/s, O of an upright wheel under a torque about its axle
     velocity = np.hypot(driven["X_O_dot"][-1], driven["Y_O_dot"][-1])
-    within(abs(velocity / speed - 1), 64 * EPSILON, "velocity")
-    beyond(abs(velocity / (speed * 19 / impulse) - 1), 4e-5, "velocity")  # the ramp without its lag
+    within(abs(velocity / speed - 1), 64 * EPSILON, "velocity, relative")
+    beyond(abs(velocity / (speed * 19 / impulse) - 1), 4e-5, "velocity by a ramp without its lag, relative")
 
 
 def test_the_recipe_for_a_speed_starts_at_that_speed(root):
@@ -105,8 +105,8 @@ def test_the_recipe_for_a_speed_starts_at_that_speed(root):
     bash(command, root)
     start = table(root / "results" / "five.csv")[0]
     speed = np.hypot(start["X_O_dot"], start["Y_O_dot"])
-    within(abs(speed - 5), 1e-6, "speed")  # the lean of 0.0008 rad lifts nothing by more
-    beyond(abs(0.3 / 0.35 * speed - 5), 0.5, "speed")  # r_0 in the place of r_0 + r
+    within(abs(speed - 5), 1e-6, "speed off 5, m/s")
+    beyond(abs(0.3 / 0.35 * speed - 5), 0.5, "speed with the lever r_0 off 5, m/s")
 
 
 def test_the_quarter_car_prints_what_its_recipe_shows(root):
@@ -122,8 +122,8 @@ def test_the_c_example_compiles_anywhere_and_prints_what_the_python_example_prin
     assert printed == run("python", EXAMPLES / "accelerations.py", folder=here) and len(printed.splitlines()) == 4
     theta_ddot = [float(x) for x in re.findall(r"theta_ddot = *(-?[\d.]+)", printed)]
     fall = -PAPER.m * PAPER.g * PAPER.r_0 * np.cos(1.308997) / fall_inertia(PAPER, 1.308997)
-    within(abs(theta_ddot[3] - fall), 1e-4, "fall")  # released from rest, held
-    beyond(abs(theta_ddot[3] - fall * 1.001), 3e-4, "theta ddot")
+    within(abs(theta_ddot[3] - fall), 1e-4, "theta_ddot of the release, rad/s2")
+    beyond(abs(theta_ddot[3] - fall * 1.001), 3e-4, "theta_ddot off a fall 0.1 % faster, rad/s2")
 
 
 def test_the_lines_of_python_and_c_for_the_header_are_those_that_run(root):
@@ -144,8 +144,8 @@ def test_a_solver_of_ones_own_gives_the_papers_wheel(root, reference_tables):
     printed = python(lines, root)
     X_O, theta = map(float, re.search(r"X_O = (\S+) m, theta = (\S+) rad", printed).groups())
     free, friction = reference_tables["free"], reference_tables["friction"]
-    within(max(abs(X_O - free["X_O"][-1]), abs(theta - free["theta"][-1])), 2e-8, "solve_ivp")
-    beyond(abs(theta - friction["theta"][-1]), 0.05, "friction")
+    within(max(abs(X_O - free["X_O"][-1]), abs(theta - free["theta"][-1])), 2e-8, "X_O, m, and theta, rad, by SciPy")
+    beyond(abs(theta - friction["theta"][-1]), 0.05, "theta off that with friction, rad")
 
 
 def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_its_snapshot(root):
@@ -168,7 +168,7 @@ def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shorte
     within(abs(shortest - 25**2 / (2 * 0.4 * 9.81)), 0.005, "v^2 / (2 mu g), m")  # as printed
     within(abs(way - shortest), 0.01, "stopping distance, m")
     locked = python(lines.replace("if mu > grip", "if mu > 9"), root)  # the partner: more than the road bears
-    beyond(shortest - float(re.search(r"([\d.]+) m;", locked)[1]), 50, "stopping distance, m")
+    beyond(shortest - float(re.search(r"([\d.]+) m;", locked)[1]), 50, "way less that of a locked wheel, m")
     ending = lines.replace('"s": 0.004', '"s": 0.004, "mu_max": 0.41')
     assert python(ending, root) == shown  # the grip is never exceeded within a step
 

@@ -169,10 +169,10 @@ def test_the_parameter_and_the_output_do_what_the_recipes_say(library: Library, 
         assert wheel.bits() == same.bits() != other.bits()
         (v_1, psi, psi_dot, X_dot, Y_dot), rates = wheel.get("v_1", "psi", "psi_dot", "X_O_dot", "Y_O_dot"), wheel.rates
         e1, across = np.array([np.cos(psi), np.sin(psi)]), np.array([-np.sin(psi), np.cos(psi)])
-        within(abs(v_1 - e1 @ (X_dot, Y_dot)), 8 * EPSILON, "velocity")
+        within(abs(v_1 - e1 @ (X_dot, Y_dot)), 8 * EPSILON, "v_1, m/s")
         (rate, *accelerations) = rates(["v_1", "X_O_dot", "Y_O_dot"])()
-        within(abs(rate - e1 @ accelerations - psi_dot * across @ (X_dot, Y_dot)), 1e-10, "rate")
-        beyond(abs(rate - e1 @ accelerations), 1e-3, "rate in axes that stand still")
+        within(abs(rate - e1 @ accelerations - psi_dot * across @ (X_dot, Y_dot)), 1e-10, "rate of v_1, m/s2")
+        beyond(abs(rate - e1 @ accelerations), 1e-3, "rate of v_1 in axes that stand still, m/s2")
 
 
 def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:
@@ -193,10 +193,10 @@ def test_every_crossing_is_logged_whatever_the_grid(library, patched: Patched, f
     run = patched.library.simulate(times, 1e-11, **WAYS[way], **limit)
     (level,) = limit.values()
     leans, loads = logged(patched.lean, run.messages), logged(patched.load, run.messages)
-    within(gap(falls(fine, "theta", LEAN), leans), 1e-6, "instant, s")
-    within(gap(falls(fine, "lambda_3", level, -1), loads), 1e-6, "instant of an overload, s")
-    beyond(gap(falls(fine, "theta", LEAN - 1e-3), leans), 1e-5, "instant of another level, s")
-    beyond(gap(falls(fine, "lambda_3", level + 1, -1), loads), 1e-5, "instant of another limit, s")
+    within(gap(falls(fine, "theta", LEAN), leans), 1e-6, "instants of the leans, s")
+    within(gap(falls(fine, "lambda_3", level, -1), loads), 1e-6, "instants of the overloads, s")
+    beyond(gap(falls(fine, "theta", LEAN - 1e-3), leans), 1e-5, "instants of another lean, s")
+    beyond(gap(falls(fine, "lambda_3", level + 1, -1), loads), 1e-5, "instants of another limit, s")
     if way == "unfolded":  # it still is
         assert run.counters["n_steps"] == library.simulate(times, 1e-11).counters["n_steps"]
 
@@ -204,8 +204,8 @@ def test_every_crossing_is_logged_whatever_the_grid(library, patched: Patched, f
 @pytest.mark.parametrize("way", WAYS)
 def test_an_event_that_is_no_symmetry_of_the_motion_keeps_it_from_being_unfolded(library, patched, fine, way: str):
     run = patched.library.simulate([0.0, 2.0, STOP], 1e-11, keep_contact=True, **WAYS[way])
-    within(gap(falls(fine, "Y_O", -0.1), logged(patched.line, run.messages)), 1e-6, "instant, s")
-    within(gap(falls(fine, "theta", LEAN), logged(patched.lean, run.messages)), 1e-6, "instant, s")
+    within(gap(falls(fine, "Y_O", -0.1), logged(patched.line, run.messages)), 1e-6, "instants of the line, s")
+    within(gap(falls(fine, "theta", LEAN), logged(patched.lean, run.messages)), 1e-6, "instants of the leans, s")
     if way == "unfolded":
         assert run.counters["n_rhs"] > 2 * library.simulate([0.0, STOP], 1e-11, keep_contact=True).counters["n_rhs"]
 
@@ -215,6 +215,6 @@ def test_another_solver_finds_them_by_their_indicators(patched: Patched, fine: R
     with exchanging.exchange(patched.library, logging=True, keep_contact=True, **limit) as wheel:
         exchanging.Run(wheel, 1e-10, exchanging.no_inputs).to(STOP)
         found = wheel.sentences
-    within(gap(falls(fine, "Y_O", -0.1), logged(patched.line, found)), 1e-6, "instant, s")
-    within(gap(falls(fine, "theta", LEAN), logged(patched.lean, found)), 1e-6, "instant, s")
-    within(gap(falls(fine, "lambda_3", level, -1), logged(patched.load, found)), 1e-6, "instant, s")
+    within(gap(falls(fine, "Y_O", -0.1), logged(patched.line, found)), 1e-6, "instants of the line, s")
+    within(gap(falls(fine, "theta", LEAN), logged(patched.lean, found)), 1e-6, "instants of the leans, s")
+    within(gap(falls(fine, "lambda_3", level, -1), logged(patched.load, found)), 1e-6, "instants of the overloads, s")

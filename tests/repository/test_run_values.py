@@ -41,7 +41,7 @@ def given(done: subprocess.CompletedProcess[str]) -> dict[str, str]:
 
 def test_values_become_start_values_in_si(root):
     values = given(ask(root, "s=0.01", "theta_start=60deg", "formulation=2", "keep_contact=true", "stop_time=20"))
-    within(abs(float(values.pop("theta_start")) - pi / 3), 16 * EPSILON, "theta_start")
+    within(abs(float(values.pop("theta_start")) - pi / 3), 16 * EPSILON, "theta_start, rad")
     assert values == {
         "s": "0.01",
         "formulation": "2",
@@ -66,7 +66,7 @@ UNITS |= {"M_brake=20": 20, "M_3=-2Nm": -2, "F_X=0.3kN": 300, "phi_dot_start=-30
 @pytest.mark.parametrize(("argument", "value"), UNITS.items())
 def test_parameters_and_inputs_take_units(root, argument, value):
     values = given(ask(root, argument))
-    within(abs(float(values[argument.partition("=")[0]]) / value - 1), 4 * EPSILON, "the value in SI")
+    within(abs(float(values[argument.partition("=")[0]]) / value - 1), 4 * EPSILON, "the value in SI, relative")
 
 
 REFUSED = {"theta=1": "theta_start", "speed=3": "Do you mean", "slope=-8deg": "slope_direction"}
@@ -98,8 +98,8 @@ def test_a_speed_starts_a_wheel_upright_from_the_origin_forward_along_x(root, mo
     want = {"X_O": 0, "Y_O": 0, "Z_O": R, "X_O_dot": 5, "Y_O_dot": 0, "Z_O_dot": 0}
     want |= {"psi": 0, "theta": pi / 2, "omega_z": -5 / R}
     off = max(abs(start[name] - value) for name, value in want.items())
-    within(off, 16 * EPSILON * 5 / R, "start")
-    beyond(abs(start["omega_z"] - 5 / R), 5, "start")  # the other sign rolls backwards
+    within(off, 16 * EPSILON * 5 / R, "start, SI")
+    beyond(abs(start["omega_z"] - 5 / R), 5, "spin of a wheel that rolls backwards, rad/s")
 
 
 @pytest.mark.parametrize("psi_dot", [0.0, 0.7])
@@ -107,9 +107,9 @@ def test_a_speed_starts_a_wheel_upright_from_the_origin_forward_along_x(root, mo
 def test_a_speed_is_that_of_the_centre_along_the_heading_of_a_leaning_wheel_too(root, theta, psi_dot):
     start = start_of(root, f"theta_start={theta}", f"psi_dot_start={psi_dot}", "v=3", "psi_start=1", "X_O_start=2")
     along = start["X_O_dot"] * np.cos(1) + start["Y_O_dot"] * np.sin(1)
-    within(abs(along - 3), 32 * EPSILON * 3, "speed")
+    within(abs(along - 3), 32 * EPSILON * 3, "speed along the heading off 3, m/s")
     assert (start["X_O"], start["psi"], start["theta"]) == (2, 1, theta)
-    beyond(abs(3 * 0.35 / (0.3 + 0.05 * np.sin(theta)) - 3), 0.03, "speed")  # the radius of an upright wheel
+    beyond(abs(3 * 0.35 / (0.3 + 0.05 * np.sin(theta)) - 3), 0.03, "speed by the radius when upright off 3, m/s")
 
 
 def test_a_speed_and_a_spin_are_not_given_together(root):
@@ -157,8 +157,8 @@ def test_the_moments_of_a_ready_body_are_those_of_its_mass_in_space(root, body, 
     p = {k: float(v) for k, v in given(ask(root, f"body={body}", *(f"{k}={v}" for k, v in size.items()))).items()}
     exact, other = integrated(body, **size), integrated("hoop" if body == "torus" else "torus", **size)
     for name in ("J_x", "J_y", "J_z"):
-        within(abs(p[name] / exact[name] - 1), 1e-9, f"{name} of a {body}")
-        beyond(abs(p[name] / other[name] - 1), 1e-3, f"{name} of another body")
+        within(abs(p[name] / exact[name] - 1), 1e-9, f"{name} of a {body}, relative")
+        beyond(abs(p[name] / other[name] - 1), 1e-3, f"{name} of another body, relative")
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -62,7 +62,7 @@ def test_random_cuts_change_nothing(defect, kind, pieces):
     @given(random_cuts)
     def check(drawn):
         worst.append(defect(kind, pieces, with_gaps(drawn)))
-        within(worst[-1], BOUND, "difference")
+        within(worst[-1], BOUND, "difference by the cuts, tolerances of the range")
 
     check()
     assert len(worst) > 4
@@ -72,21 +72,21 @@ def test_cuts_that_rounding_makes_change_nothing(defect, kind):
     """Sums of a thousandth of a second, and a partner that splits at multiples of a tenth and its own sums."""
     sums = list(accumulate([1e-3] * 1999))
     tenths = [*(0.1 * k for k in range(1, 20)), *accumulate([0.1] * 19)]
-    within(defect(kind, VARIED, sums), BOUND, "defect")
-    within(defect(kind, VARIED, tenths), 0.2, "defect, 2")
+    within(defect(kind, VARIED, sums), BOUND, "difference by sums of steps, tolerances of the range")
+    within(defect(kind, VARIED, tenths), 0.2, "difference by tenths and their sums, tolerances of the range")
 
 
 @pytest.mark.parametrize("gap", GAPS)
 def test_a_step_that_is_next_to_nothing_changes_nothing(defect, kind, gap):
     for tolerance in (1e-9, 1e-6, 1e-4):
         cuts = with_gaps([(1.0, gap)])
-        within(defect(kind, VARIED, cuts, tolerance=tolerance), BOUND, "defect")
+        within(defect(kind, VARIED, cuts, tolerance=tolerance), BOUND, "change by the step, tolerances of the range")
 
 
 def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(defect, kind):
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]
-    beyond(defect(kind, VARIED, [1.25], wrong), 1000, "defect")
+    beyond(defect(kind, VARIED, [1.25], wrong), 1000, "difference by a wrong input, tolerances of the range")
 
 
 OFF = 1e-6  # of three start values, to see how errors grow
@@ -130,11 +130,11 @@ def test_a_brake_that_passes_zero_inside_a_step_is_as_exact_as_one_cut_there(pla
         return max(error(tolerance, pieces, **kind) / tolerance for tolerance in tolerances) / max(growth, 1)
 
     for kind in FORCED:
-        within(worst(kind, [10 ** rng.uniform(-12, -8)]), 30, "tolerances over growth")
+        within(worst(kind, [10 ** rng.uniform(-12, -8)]), 30, "error over growth, tolerances")
     tolerances = np.geomspace(1e-12, 1e-9, 7)  # Runge-Kutta's long steps see most of the corner
-    within(worst(RUNGE_KUTTA, tolerances), 1, "tolerances over growth, Runge-Kutta")
+    within(worst(RUNGE_KUTTA, tolerances), 1, "error over growth by Runge-Kutta, tolerances")
     stronger = [(0.0, {"M_brake": 1.001 * brake})]  # the partner
-    beyond(worst(RUNGE_KUTTA, tolerances, stronger), 30, "tolerances over growth of a stronger brake")
+    beyond(worst(RUNGE_KUTTA, tolerances, stronger), 30, "error over growth of a stronger brake, tolerances")
 
 
 @pytest.mark.parametrize("kind", [kind for kind in FORCED if kind["method"] in (2, 3)], ids=str)

@@ -9,7 +9,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import DISCARD, ERROR, OK
 from support.motion import Library, Run
 from support.motion import run as attempt
@@ -62,16 +62,17 @@ def test_an_extreme_slide_loses_energy_obeys_coulomb_and_is_the_same_in_both_for
         assert (run["contact_mode"] == 1).any()
         if "slope" not in EXTREMES[name]:  # where E takes no account of the height along the road
             E = run["E"]
-            within(float(np.diff(E).max(initial=0.0)) / np.abs(E).max(), 10 * TOLERANCE, "gain of energy, relative")
-        within(force_error(run, mu), 1e-9, "force beside friction, relative")
-        beyond(force_error(run, 0.9 * mu), 1e-2, "force beside nine tenths of it")
-        within(run.counters["n_steps"], 2e4, "steps")
+            within(float(np.diff(E).max(initial=0.0)) / np.abs(E).max(), TOLERANCE, "gain of energy, relative")
+        within(force_error(run, mu), 512 * EPSILON, "force off friction, relative")
+        beyond(force_error(run, 0.9 * mu), 1e-2, "force off nine tenths of friction, relative")
+        within(run.counters["n_steps"], 2e4, "number of steps")
     assert (runs[0].end is None) == (runs[1].end is None)
     last = min(len(run.t) for run in runs) - 1
     for column in STATES:
         size = max(1.0, float(np.abs(runs[0][column]).max()))
         apart = absolute_error(runs[1][column][:last], runs[0][column][:last]) / size
-        within(apart, 3e-5, f"{column} of the formulations apart, relative")
+        bound = (100 if name in ("near flat", "rod") else 10) * TOLERANCE
+        within(apart, bound, f"{column} of the formulations apart, relative")
 
 
 @pytest.mark.parametrize("start", [-1e9, 1e3, 1e9])
@@ -86,7 +87,7 @@ def test_a_slide_is_the_same_at_any_start_time(library: Library, name: str, star
     moments = [[float(m.split(" = ")[1].split()[0]) for m in run.messages if " slid" in m] for run in (early, late)]
     assert len(moments[0]) == len(moments[1]) and (moments[0] or name == "mu = 0.05")
     apart = max((abs(b - start - a) for a, b in zip(*moments, strict=True)), default=0.0)
-    within(apart, 4 * rounding + 1e-9, "instants apart, s")
+    within(apart, 4 * rounding + 1e-9, "instants apart, s")  # logged to the nanosecond
 
 
 # ---- inputs that are cut ----
@@ -106,8 +107,8 @@ def test_communication_points_inside_a_slide_change_no_more_than_the_tolerance(w
             ends.append(np.array(w.get(*STATES)))
             slides += sum("slid" in sentence for sentence in w.sentences)
         if len(ends) == 2:
-            within(absolute_error(*ends) / max(1.0, np.abs(ends[0]).max()), 300 * TOLERANCE, "states apart")
-    beyond(slides, 5, "slides")
+            within(absolute_error(*ends) / max(1.0, np.abs(ends[0]).max()), TOLERANCE, "states apart, relative")
+    beyond(slides, 5, "number of slides")
 
 
 def test_an_input_set_to_what_it_is_changes_no_bit_of_a_slide(wheel) -> None:

@@ -58,7 +58,7 @@ def test_a_peak_of_the_load_inside_one_step_lifts_the_wheel_at_its_instant(wheel
     shape = SHAPES[name]
     found = lift_off(wheel, kind, {"F_Z": [WEIGHT * c for c in shape]}, s=s)
     assert found is not None
-    within(abs(found - first_root(shape)), INSTANT, "first root")
+    within(abs(found - first_root(shape)), INSTANT, "instant of the lift-off, s")
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
@@ -73,7 +73,7 @@ def test_a_wheel_of_next_to_no_mass_lifts_off_at_the_same_instant(wheel, kind):
     """A billionth of all masses and of the load: the unit of force has no meaning."""
     light = {name: 1e-9 * getattr(PAPER, name) for name in ("m", "J_x", "J_y", "J_z")}
     found = lift_off(wheel, kind, {"F_Z": [1e-9 * WEIGHT * c for c in SHAPES["cubic"]]}, **light)
-    within(abs(found - first_root(SHAPES["cubic"])), 5e-10, "first root")
+    within(abs(found - first_root(SHAPES["cubic"])), 5e-10, "instant of the lift-off, s")
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03])
@@ -90,7 +90,7 @@ def test_two_inputs_that_nearly_cancel_hide_nothing(wheel, ramp, s):
     true = w.status(LAST_SUCCESSFUL_TIME) - BEGIN
     assert 0 < true < STEP / 2
     for kind in FORCED:
-        within(abs(lift_off(wheel, kind, inputs, **start) - true), 2e-9, "lift off")  # s
+        within(abs(lift_off(wheel, kind, inputs, **start) - true), 2e-9, "instant of the lift-off, s")
     assert lift_off(wheel, FORCED[0], {"F_Z": [0.1 * c for c in force]}, **start) is None
 
 
@@ -102,7 +102,7 @@ def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_insta
     logged = [m for m in w.sentences if "release" in m]
     x = 0.5 * (1 - np.sqrt(0.25))  # 5 - 16 x (1 - x) = 2
     assert len(logged) == 1
-    within(abs(float(logged[0].split()[2]) - x * STEP), 64 * EPSILON, "split")
+    within(abs(float(logged[0].split()[2]) - x * STEP), 64 * EPSILON, "instant of the release, s")
     assert w.get("phi")[0] != 0
     inputs["M_brake"][0] = 6.1  # the partner: it sinks to 2.1
     assert held.give(inputs).to(STEP).get("phi") == [0.0]

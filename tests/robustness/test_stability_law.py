@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from robustness.judges import FRICTION, TIMES, error_against, law_bound
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import OK, Values
 from support.motion import Library, Run, run
 
@@ -25,9 +25,9 @@ def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, me
 @pytest.mark.parametrize("omega_s", [1e-3, 1e-5, 1e-7, 1e-8])
 def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float, method: str, tolerance: float) -> None:
     bound = law_bound(omega_s, tolerance)
-    within(law_error(library, truth, omega_s, tolerance, method), bound, "law error")
+    within(law_error(library, truth, omega_s, tolerance, method), bound, "error of the law / range")
     lighter = run(library, {"s": 0.025}, TIMES, tolerance)
-    beyond(error_against(truth, lighter), bound, "error against")  # another friction
+    beyond(error_against(truth, lighter), bound, "error of another friction / range")
 
 
 @pytest.mark.parametrize("x", [3.0, 6.5, 9.0, 12.0])
@@ -42,7 +42,8 @@ def test_a_spin_that_a_stiff_law_balances_far_out_in_its_layer_stays_there(wheel
         w = wheel().start(tolerance=1e-12, theta_start=np.pi / 2, phi_dot_start=x * omega_s, **law)
         return abs(w.put(M_3=part * capacity).to(1.0).get("omega_z")[0] / omega_s - x)
 
-    within(drift(np.tanh(x)), 1e-6, "drift of the spin in widths of the law")
+    steep = np.cosh(x) ** 2  # of the width by the torque, whose rounding shifts the balance
+    within(drift(np.tanh(x)), min(1e-6, 16 * steep * EPSILON), "drift of the spin in widths of the law")
     beyond(drift(0.5 * np.tanh(x)), 2, "drift under half the torque, in widths")
 
 
@@ -71,9 +72,9 @@ def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library
     times = np.linspace(0, 600, 601)
     done = run(library, FRICTION, times, 1e-8)
     assert done.t[-1] == 600 and (done["omega_z"][done["friction_mode"] == 0] == 0).all()
-    within(np.diff(done["E"]).max() / done["E"][0], 1e-8, "rise")  # it never rises between two readings
+    within(np.diff(done["E"]).max() / done["E"][0], 0, "rise of the energy between two readings, relative")
     free = run(library, {"method": "adams"}, times, 1e-4)
-    beyond(np.diff(free["E"]).max() / free["E"][0], 9e-8, "rise")  # nothing dissipates, a looser tolerance
+    beyond(np.diff(free["E"]).max() / free["E"][0], 9e-8, "rise without friction, relative")  # at a looser tolerance
     looser = run(library, FRICTION, [0.0, 600.0], 1e-6)
     assert looser.counters["n_events"] == done.counters["n_events"] == len(done.events) > 3000
     rhs = [run(library, FRICTION, [0.0, stop], 1e-8).counters["n_rhs"] for stop in (50.0, 150.0, 500.0, 600.0)]
@@ -142,5 +143,5 @@ def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid
     for count in (0, 1, 30, 300):
         steps, *found = end(np.sort(rng.uniform(0, 3, count)))
         within((steps - count) / bdf[0], 1.5, "steps over those of BDF")  # an input that varies cuts at each point
-        within(absolute_error(found, bdf[1:]), 1e-4, "difference to BDF")
-    beyond(absolute_error(end(factor=1.01)[1:], found), 1e-6, "difference to a stronger brake")  # the partner
+        within(absolute_error(found, bdf[1:]), 1e-4, "motion off that of BDF, rad/s, rad")
+    beyond(absolute_error(end(factor=1.01)[1:], found), 1e-6, "motion off that of a stronger brake")

@@ -68,8 +68,8 @@ def test_every_judge_finds_what_is_broken_and_nothing_else(library, fault, name,
 def test_friction_that_takes_too_little_and_spin_while_held_are_found(library: Library) -> None:
     case = replace(CASES[PAPERS], samples=4000)
     done = run(library, case.start, case.times, 1e-8, rates=judges.RATES)
-    within(judges.energy(case, done), 3e-8, "energy")
-    beyond(judges.energy(replace(case, start={"s": 0.03 * (1 - 1e-5)}), done), 1e-6, "energy")  # lighter
+    within(judges.energy(case, done), 3e-8, "energy off the work of friction, relative")
+    beyond(judges.energy(replace(case, start={"s": 0.03 * (1 - 1e-5)}), done), 1e-6, "off that of lighter friction")
     assert judges.fixed(case, done) == 0
     slips = replace(done, columns=done.columns | {"omega_z": done["omega_z"] + 1e-15})
     assert judges.fixed(case, slips) > 0

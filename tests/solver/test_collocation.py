@@ -48,13 +48,13 @@ def test_one_step_has_the_error_of_radaus_quadrature_which_falls_by_the_twelfth_
     nodes, weights = roots_jacobi(5, 1, 0)  # Radau's points without the end
     nodes, weights = (nodes + 1) / 2, weights / 2
     found = [quadrature_error(collocation, h) for h in (0.8, 0.4)]
-    within(abs(log2(found[0] / found[1]) - 12), 0.3, "local order")
+    within(abs(log2(found[0] / found[1]) - 12), 0.3, "local order off 12")
     nodes = np.append(nodes, 1.0)
     vander = np.vander(nodes, 6, increasing=True).T
     weights = np.linalg.solve(vander, 1 / np.arange(1, 7))  # exact for powers up to the fifth
     for h, error in zip((0.8, 0.4), found, strict=True):
         expected = abs(h * weights @ np.cos(5 * h * nodes) - np.sin(5 * h) / 5)
-        within(abs(error - expected), 256 * EPSILON, "error beside that of the quadrature")
+        within(abs(error - expected), 256 * EPSILON, "error off that of the quadrature")
 
 
 def run(collocation, problem, tolerance, until):
@@ -76,7 +76,7 @@ def test_the_error_is_that_of_the_tolerance_at_the_ends_and_inside(collocation, 
     within(ends, 0.3, "error at the ends of the steps, in tolerances")
     within(inside, 0.3, "error inside the steps, in tolerances")
     beyond(run(collocation, problem, 100 * tolerance, until)[0], ends / 100, "error at a hundred tolerances")
-    within(one.now.steps, 80, "steps")
+    within(one.now.steps, 80, "number of steps")
 
 
 @pytest.mark.parametrize("off", [0.3, 1e-3])
@@ -93,7 +93,7 @@ def test_a_direction_off_its_limit_settles_by_the_closed_form(collocation, off, 
             for t in (begin, 0.9 * begin + 0.1 * end, 0.5 * begin + 0.5 * end, min(end, until)):
                 worst = max(worst, error_of(one, t, problem, off=off, since=since, speed=speed))
         within(worst / tolerance, 10, "error in tolerances")
-        within(one.now.steps, 400, "steps")
+        within(one.now.steps, 400, "number of steps")
 
 
 def test_however_close_to_nothing_the_speed_falls_steps_go_on(collocation):
@@ -136,11 +136,11 @@ def test_the_polynomial_begins_and_ends_with_the_step_and_has_the_rates_at_its_e
         one.step()
         begin, end = one.now[:2]
         near = 1e-6 * (end - begin)
-        within(absolute_error(one.read(begin + near), one.read(begin)), 1e-5, "jump at the start")
+        within(absolute_error(one.read(begin + near), one.read(begin)), 1e-5, "jump at the start of the step")
         back = (np.array(one.read(end)) - one.read(end - near)) / near
         y = one.read(end)
         rates = [1.0, np.cos(end) - STIFFNESS * (y[1] - np.sin(end)) / y[0], y[3] + y[1] - np.sin(end), -y[2]]
-        within(absolute_error(back, rates), 1e-5, "rates at the end")
+        within(absolute_error(back, rates), 1e-5, "rates at the end of the step")
 
 
 @pytest.mark.parametrize("problem", ["harmonic", "settling", "falling"])

@@ -27,7 +27,7 @@ def test_every_dip_inside_a_step_is_found(solver, method, depth):
     assert len(found) == 3
     # The tolerance is 1e-6; a wrong phase moves the edge of a shallow dip by error / slope.
     for t, exact in zip(found, expected, strict=True):
-        within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "instant, s")
+        within(absolute_error(t, exact), 2e-4 / sqrt(depth) * 0.1 + 1e-5, "instant of the fall, s")
 
 
 def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
@@ -38,7 +38,7 @@ def test_of_a_dip_however_brief_the_first_instant_is_found(solver, method):
         one = solver(method, "clock", each_step=lambda t, y, c=centre, w=half: (t - c) ** 2 - w**2)
         assert one.run(1.0) == EVENT
         # five digits of the width, down to the last that the time has
-        within(abs(one.now.known - (centre - half)) / half, 1e-5, "error over half the width")
+        within(abs(one.now.known - (centre - half)) / half, 5e-6, "instant of the fall over half the width")
         roots += one.now.roots
     assert roots < 60 * 100  # a halved step costs two values, and at most 48 are spent between two extremes
 
@@ -69,7 +69,7 @@ def test_of_two_dips_between_bends_the_first_is_found(solver, method, depth):
     outcome, now = double_dip(solver, method, depth)
     assert outcome == EVENT
     # The first root: (t - 0.3) (0.7 - t) = -sqrt(depth).
-    within(absolute_error(now.known, 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "time")
+    within(absolute_error(now.known, 0.5 - sqrt(0.04 + sqrt(depth))), 64 * EPSILON, "instant of the fall, s")
 
 
 def test_above_zero_two_dips_end_nothing(solver, method):
@@ -98,4 +98,4 @@ def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(solver, m
     one = solver(method, "clock", each_step=lambda t, y: y[0] ** 2 * (last - y[0]))
     assert one.run(10 * last) == EVENT
     rounding = 128 * EPSILON if method == "collocation" else 0  # of the powers over a step of one second
-    within(absolute_error(one.now.known, last), 2e-12 * last + rounding, "instant, s")
+    within(absolute_error(one.now.known, last), 2e-12 * last + rounding, "instant of the fall, s")

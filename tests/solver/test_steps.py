@@ -37,8 +37,8 @@ def test_the_table_has_the_rows_of_the_method(table):
 def test_a_row_is_scipys_and_one_wrong_digit_would_be_seen(table, name):
     row = np.resize(ROWS[name], 16) * (np.arange(16) < len(ROWS[name]))
     size = np.abs(row).max()
-    within(absolute_error(table[name], row) / size, 4 * EPSILON, "weights")
-    beyond(absolute_error(table[name] * (1 + 1e-12), row) / size, 4 * EPSILON, "weights with a wrong digit")
+    within(absolute_error(table[name], row) / size, 4 * EPSILON, "weights, relative")
+    beyond(absolute_error(table[name] * (1 + 1e-12), row) / size, 4 * EPSILON, "weights with a wrong digit, relative")
 
 
 def errors_of_steps(solver, h):
@@ -54,8 +54,8 @@ def errors_of_steps(solver, h):
 
 def test_halving_the_step_shows_order_8_at_the_ends_and_7_inside(solver):
     coarse, fine = (errors_of_steps(solver, h) for h in (0.4, 0.2))
-    within(abs(log2(coarse[0] / fine[0]) - 8.3), 0.7, "at_ends")
-    within(abs(log2(coarse[1] / fine[1]) - 8.2), 0.8, "inside")  # local order 8
+    within(abs(log2(coarse[0] / fine[0]) - 8.3), 0.7, "order at the ends off 8.3")
+    within(abs(log2(coarse[1] / fine[1]) - 8.2), 0.8, "order inside off 8.2")  # local order 8
 
 
 def accuracy(solver, method, tolerance):
@@ -70,8 +70,8 @@ def accuracy(solver, method, tolerance):
 def test_the_error_of_a_harmonic_oscillator_stays_within_the_tolerance(solver, method):
     tolerance = 1e-8
     (loose, few), (tight, many) = (accuracy(solver, method, t) for t in (1e-4, tolerance))
-    within(tight / tolerance, 5, "error")
-    beyond(loose / tight, 90, "error")
+    within(tight / tolerance, 5, "error, tolerances")
+    beyond(loose / tight, 90, "error at 1e-4 over that at 1e-8")
     assert few.steps < many.steps
 
 
@@ -84,8 +84,8 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
     one.step()
     limited = one.now
     one.step()
-    within(relative_error(limited.known - limited.begin, 0.01), 128 * EPSILON, "limited")
-    beyond((one.now.known - one.now.begin) / (before.known - before.begin), 0.9, "next")
+    within(relative_error(limited.known - limited.begin, 0.01), 128 * EPSILON, "first step, relative")
+    beyond((one.now.known - one.now.begin) / (before.known - before.begin), 0.9, "second step over that before")
     assert limited.rhs - before.rhs == 12  # what only its dense output needs is left out
 
 
@@ -93,7 +93,7 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
 def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(solver, method, problem):
     one = solver(method, problem)
     assert one.run(2.0, 100_000) == FAILED
-    within(absolute_error(one.now.known, 1), 4e-8, "until")
+    within(absolute_error(one.now.known, 1), 4e-8, "instant of the failure, s")
     assert one.failure.startswith("the step size became too small: ")
 
 

@@ -29,4 +29,4 @@ def test_the_optimal_moments_stay_in_their_bounds_and_lead_to_the_line(fmu):
     within((np.abs(moments).max(axis=1) / control.BOUNDS).max(), 1 + 1e-6, "moment over its bound")
     off = np.abs(control.followed(fmu, t, x, moments))
     within(off.max(), 0.05, "off the end, m, rad")  # the midpoint rule with steps of 50 ms
-    beyond(np.abs(control.followed(fmu, t, x, 0 * moments)).max(), 1, "without moments")
+    beyond(np.abs(control.followed(fmu, t, x, 0 * moments)).max(), 1, "off the end without moments, m, rad")

@@ -68,7 +68,7 @@ def test_the_slip_and_the_time_of_sliding_of_a_locked_wheel_are_the_closed_forms
     within(absolute_error(results["mean"], v**2 / (2 * mu * 9.81) / 3), 2e-5, "mean slip, m/s")  # its last interval
     slow = ((v - 2) / (mu * 9.81)).where(v > 2, 0)
     within(absolute_error(results["slow"], slow), 1e-7, "first passage of 2 m/s, s")
-    beyond(absolute_error(results["slid"].sel(mu_slide=0.3), (v / (0.31 * 9.81))), 0.05, "by another friction, s")
+    beyond(absolute_error(results["slid"].sel(mu_slide=0.3), v / (0.31 * 9.81)), 0.05, "time by another friction, s")
 
 
 def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(rolled: xr.Dataset, fmu_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_a_wheel_of_a_study_moves_as_fmpy_simulates_it(rolled: xr.Dataset, fmu_p
         expected = simulate_fmu(str(fmu_path), start_values={"s": s}, output_interval=0.01, output=["theta", "X_O"])
         for name in ("theta", "X_O"):
             # the instants may differ by rounding
-            within(absolute_error(rolled[name].sel(s=s), expected[name]), 4096 * EPSILON, "beside fmpy, rad, m")
+            within(absolute_error(rolled[name].sel(s=s), expected[name]), 4096 * EPSILON, f"{name} off FMPy's, SI")
     beyond(absolute_error(*rolled["theta"].values), 0.1, "the two wheels apart, rad")
 
 
@@ -87,7 +87,7 @@ def test_measures_are_those_of_the_history(rolled: xr.Dataset) -> None:
     within(relative_error(one["mean"], np.trapezoid(theta, t) / 10), 1024 * EPSILON, "mean of 1001 terms, relative")
     k = int(np.argmax(theta < 0.8))  # it passes 0.8 once here
     assert t[k - 1] < one["down"] <= t[k]
-    within(abs(np.interp(one["down"], t, theta) - 0.8), 64 * EPSILON, "theta then, rad")
+    within(abs(np.interp(one["down"], t, theta) - 0.8), 64 * EPSILON, "theta at the first passage off 0.8, rad")
     assert one["at_once"] == 0 and np.isnan(one["never"])
 
 

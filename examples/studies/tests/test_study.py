@@ -59,7 +59,7 @@ def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> N
     assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
     turned = in_degrees(results)
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
-    within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "degrees, relative")
+    within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "theta_start in deg, relative")
     np.testing.assert_array_equal(turned["energy"], results["energy"])
     (axes,) = {line.axes for line in curves(turned["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")}
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["0", "0.03"]
@@ -167,7 +167,7 @@ def test_a_check_states_the_error_of_some_wheels_and_keeps_it_in_two_columns(
         stated = float(re.search(r"Of 2 wheels run again at the tightest tolerance .* is at most (\S+) of", said)[1])
         error = xr.open_zarr(out, consolidated=False)["check_error"].values
         assert np.isfinite(error).sum() == 2
-        within(abs(stated / np.nanmax(error) - 1), 0.1, "stated, relative")
+        within(abs(stated / np.nanmax(error) - 1), 0.1, "error stated beside that in the table, relative")
         assert "check_error,check_shift" in (tmp_path / f"{name}.csv").read_text()
         found.append(np.nanmax(error))
     within(found[0], 1e-7, "error / range")

@@ -54,7 +54,7 @@ def test_each_wheel_of_a_turning_axle_stops_at_its_own_instant(fmus: Fmus) -> No
     table = AXLE.drive(fmus, ROLLING_OUT.changed(stiffness=4.0), 0.0005, grid=0.005).whole
     for wheel, stop in (("left", inner), ("right", outer)):
         spin = table[f"{wheel}.omega_z"]
-        within(abs(table["time"][np.argmax(spin == 0)] - stop), 0.02, f"the {wheel} wheel stops, s")  # grid: 5 ms
+        within(abs(table["time"][np.argmax(spin == 0)] - stop), 0.02, f"stop of the {wheel} wheel, s")  # grid: 5 ms
         assert spin[-1] == 0
     assert outer - inner > 1  # partner: the instants are far apart
 
@@ -68,10 +68,10 @@ def test_held_positions_take_energy_and_straight_lines_hardly_any(fmus: Fmus) ->
 
 @pytest.mark.parametrize("scene", sets.SCENES)
 def test_the_rigid_wheel_set_has_modelicas_numbers(scene: str) -> None:
-    within(sets.distance(sets.table(scene), sets.rigid(scene)), 1e-5, "Modelica's table, m, rad")
+    within(sets.distance(sets.table(scene), sets.rigid(scene)), 1e-5, "distance from Modelica's table, m, rad")
     at = read("multibody_jl_driving")
     exact = sets.rigid_at("driving", at["time"])
-    within(np.hypot(at["x"] - exact["x"], at["y"] - exact["y"]).max(), 1e-3, "Multibody.jl's test, m")
+    within(np.hypot(at["x"] - exact["x"], at["y"] - exact["y"]).max(), 1e-3, "distance from Multibody.jl's test, m")
 
 
 @pytest.mark.parametrize("scene", sets.SCENES)

@@ -31,11 +31,11 @@ def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(fmus: 
     assert not any(table[f"{w}.omega_z"][held].any() for w in WHEELS)
     start = table["time"] < HILL["t_brake"]
     assert car.rolled_back({name: values[start] for name, values in table.items()}) == 0
-    within(car.rolled_back(table), car.LIMITS["roll_back"], "rolls back, m")
+    within(car.rolled_back(table), car.LIMITS["roll_back"], "way that it rolls back, m")
     for finding in car_judges.standing(table, HILL, constants(HILL)):
         within(error(finding), 0.01 if finding.what.startswith("load") else 1e-3, f"{finding.what}, relative")
     weak = HILL.changed(B_hold=400.0)  # partner: below m g R sin(slope), 652 N m
-    beyond(car.rolled_back(drive(fmus, weak)), 0.1, "rolls back with weak brakes, m")
+    beyond(car.rolled_back(drive(fmus, weak)), 0.1, "way that it rolls back with weak brakes, m")
 
 
 def test_the_orders_of_the_masters(fmus: Fmus) -> None:
@@ -44,7 +44,7 @@ def test_the_orders_of_the_masters(fmus: Fmus) -> None:
     truth = drive(fmus, lane, 0.0005, "rollback", 0.25)
     for exchange, order in (("held", 1), ("derivatives", 2), ("rollback", 4)):
         coarse, fine = (car.CAR.error(fmus, lane, truth, h, exchange) for h in (0.002, 0.001))
-        within(abs(np.log2(coarse / fine) - order), 0.3, f"{exchange}: off the order")
+        within(abs(np.log2(coarse / fine) - order), 0.3, f"{exchange}: order of convergence off {order}")
     softer = lane.changed(**{f"k_{w}": 0.99 * float(wheel["k"]) for w, wheel in WHEELS.items()})
     beyond(car.CAR.error(fmus, softer, truth, 0.002, "rollback") / coarse, 100, "error of springs 1 % softer")
 
@@ -72,7 +72,7 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     soft, stiff = ([f for f in found(table, manoeuvre, c) if f.exact] for table in tables)
     assert len(soft) == count
     for finding, nearer in zip(soft, stiff, strict=True):
-        within(error(finding), 0.04, "error, relative")
+        within(error(finding), 0.04, f"{finding.what}, relative")
         within(error(nearer) / max(0.45 * error(finding), rest), 1, "error of stiff links over what 1/k allows")
 
 
@@ -94,7 +94,7 @@ def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_decelerati
 def test_wheels_that_never_slip_do_not_understeer(fmus: Fmus) -> None:
     table = drive(fmus, CIRCLE.changed(stop=12.0, ramp_v=7.0), 0.002)
     found = {f.what: f for f in car_judges.circle(table, CIRCLE, constants(CIRCLE))}
-    within(abs(found["understeer gradient"].measured), 3e-5, "rad s2/m")  # a road car: 2e-3 to 5e-3
+    within(abs(found["understeer gradient"].measured), 3e-5, "understeer gradient, rad s2/m")  # road cars: 2e-3 to 5e-3
 
 
 def test_the_figure_of_eight_closes(fmus: Fmus) -> None:
@@ -110,7 +110,7 @@ def test_a_step_of_the_steering_overshoots_and_needs_the_friction_of_an_axle_not
     beyond(found["overshoot of the lateral acceleration"], 0.01, "overshoot")
     least = float(np.abs(table["a_y"]).max()) / car_judges.G
     within(abs(max(car_judges.demand(table).values()) / least - 1), 0.1, "friction over a / g, off 1")
-    beyond(max(np.nanmax(table[f"{w}.mu_required"]) for w in WHEELS) / least, 2, "of one wheel over a / g")
+    beyond(max(np.nanmax(table[f"{w}.mu_required"]) for w in WHEELS) / least, 2, "friction of one wheel over a / g")
 
 
 OF_FIVE_WHEELS = """

@@ -32,7 +32,7 @@ def test_the_error_of_held_positions_is_the_drag_of_their_lag(found: Errors) -> 
     within(np.divide(held, lagging).max(), 0.25, "error of those that follow over that of held positions")
     for factor, check in ((1, within), (2, beyond)):  # of the step, and so of the drag
         predicted = [suspended.drag_share(factor * h) for h in STEPS]
-        check(relative_error(lagging, predicted), 0.05, "error beside the drag, relative")
+        check(relative_error(lagging, predicted), 0.05, "error of held positions off the drag, relative")
 
 
 def test_the_coupled_wheel_stands_until_the_drive_pulls(fmus: Fmus) -> None:
@@ -85,7 +85,7 @@ def test_a_locked_and_an_ideal_brake_stop_after_the_closed_forms_way(stops: Tabl
     for name, exact in (("locked", suspended.sliding_way(stops, ABS)), ("ideal", suspended.gripping_way(stops, ABS))):
         off = suspended.way(stops, ABS, name) / exact - 1
         within(abs(off), 1e-3, f"{name}: way off the closed form, relative")
-        beyond(abs(1.005 * (off + 1) - 1), 3e-3, f"{name}: with 0.5 % more")
+        beyond(abs(1.005 * (off + 1) - 1), 3e-3, f"{name}: way 0.5 % longer off the closed form, relative")
     assert np.any(stops["locked.slip_x"]) and not np.any(stops["ideal.slip_x"])
 
 

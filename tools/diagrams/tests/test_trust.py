@@ -44,7 +44,7 @@ def test_the_estimated_error_is_the_true_one(wheel: Wheel, scene: Scene) -> None
     estimated, true = (differences(run.rows, rows).max() for rows in (truth.rows, exact))
     beyond(true, ROUNDING, "true error / range")
     within(abs(np.log2(estimated / true)), 1, "estimated over true error, off 1 by a factor of 2")
-    beyond(abs(np.log2(differences(other.rows, truth.rows).max() / true)), 1, "of a looser run")
+    beyond(abs(np.log2(differences(other.rows, truth.rows).max() / true)), 1, "that of a looser run over it")
 
 
 def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
@@ -105,21 +105,21 @@ def test_an_upright_start_and_runs_that_part_are_named_with_the_instant_up_to_wh
     falls = [wheel.motion({"theta_start": str(np.pi / 2), "phi_dot_start": "0"}, times, t) for t in (DEFAULT, TIGHTEST)]
     found = trust(*falls)
     assert found.until is not None and "unstable or chaotic: three digits hold up to" in found.said("A")
-    beyond(found.until, 5, "s, of the fall from 6e-17 rad")
+    beyond(found.until, 5, "instant up to which digits hold in the fall from 6e-17 rad, s")
     grown = 1e-9 * np.exp(np.minimum(2 * times, 20.5))  # of two runs that part
     swing = np.column_stack([np.sin(times + 0.1 * k) for k in range(4)])
     truth, other = (Motion(times, rows) for rows in (swing, swing + grown[:, None]))
     found = trust(other, truth)
-    within(abs(found.until - np.log(2e6) / 2), 0.02, "s, of the thousandth part of the range")
+    within(abs(found.until - np.log(2e6) / 2), 0.02, "instant of a thousandth part of the range, s")
     assert trust(Motion(times, swing + 1e-5), truth).until is None
 
 
 def test_errors_of_rounding_are_named_as_such_and_a_column_without_range_has_its_scale() -> None:
     times, flat = np.linspace(0, 1, 11), np.column_stack([np.linspace(0, 5, 11), np.full((11, 3), 1.5)])
     found = trust(Motion(times, flat + 1e-15), Motion(times, flat))
-    within(found.error, 2e-15, "error")
+    within(found.error, 2e-15, "error of rounding / range")
     assert found.short == "error below 1e-11 of the range"
-    beyond(trust(Motion(times, flat + 1e-3), Motion(times, flat)).error, 0.9e-3, "error")
+    beyond(trust(Motion(times, flat + 1e-3), Motion(times, flat)).error, 0.9e-3, "error without range / scale")
 
 
 def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path: Path, monkeypatch) -> None:

@@ -33,8 +33,8 @@ def test_a_button_chooses_rates_over_tilt_or_along_e3_over_e2_or_the_path_of_the
     found = points(recorded, name)
     assert recorded.locator(".portrait [aria-checked=true]").get_attribute("name") == name
     wanted = np.column_stack(expected(simulate(output_interval=0.01, output=names, start_values={"s": 0.03}))[name])
-    within(absolute_error(found["friction"], wanted), bound, "points off")
-    beyond(absolute_error(found["free"], wanted), 1, "points of the other wheel off")
+    within(absolute_error(found["friction"], wanted), bound, f"points of {name}")
+    beyond(absolute_error(found["free"], wanted), 1, f"points of {name} off the other wheel's")
 
 
 def test_the_path_from_above_has_one_scale(recorded):

@@ -226,7 +226,7 @@ def test_a_wheel_that_slides_leaves_marks_and_a_band_and_names_what_it_does(live
     """The paper's wheel at 0.45 / 0.4 slides twice; the instants are those of its record, 0.02 s apart at most."""
     start(live, mu_max=0.45, mu_slide=0.4)
     spans = live.evaluate("page.wheels[0].phases.slides")
-    within(np.abs(np.array(spans) - [[0.5708, 0.9550], [1.8742, 2.1902]]).max(), 0.02, "instants, s")
+    within(np.abs(np.array(spans) - [[0.5708, 0.9550], [1.8742, 2.1902]]).max(), 0.02, "ends of the slides, s")
     assert live.locator("#bands .slide").count() == 2
     for t, state in ((0.7, "slides"), (1.2, "rolls")):
         live.evaluate("(t) => { page.player.seek(t); page.draw(); }", t)

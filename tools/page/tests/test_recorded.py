@@ -44,7 +44,7 @@ def shown(page: Page, t: float, name: str) -> np.ndarray:
 def test_the_wheels_pose_in_the_scene_is_that_of_the_file(recorded, scenes, name):
     there = [shown(recorded, t, f"spin:{name}") for t in INSTANTS]
     rows = [round(t / 0.01) for t in INSTANTS]
-    within(absolute_error(there, [pose_of(scenes[name][k]) for k in rows]), 64 * EPSILON, "pose")
+    within(absolute_error(there, [pose_of(scenes[name][k]) for k in rows]), 64 * EPSILON, "entries of the pose")
     beyond(absolute_error(there, [pose_of(scenes[name][abs(k - 1)]) for k in rows]), 1e-2, "pose of the row before")
 
 
@@ -53,8 +53,8 @@ def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate
     middles = range(25, 2000, 50)
     there = [shown(recorded, 0.005 * k, "spin:friction") for k in middles]
     exact, nearest = ([pose_of(row) for row in rows] for rows in (fine[25::50], scenes["friction"][12::25]))
-    within(absolute_error(there, exact), 1e-5, "pose")  # largest where the friction changes sign within the interval
-    beyond(absolute_error(nearest, exact), 1e-2, "pose of the nearest row")
+    within(absolute_error(there, exact), 1e-5, "entries of the pose")  # largest where the friction changes sign within
+    beyond(absolute_error(nearest, exact), 1e-2, "entries of the pose of the nearest row")
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_a_fast_wheel_never_seems_to_run_backwards(car):
 
 def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(car):
     expected = pose([0.7, 1.4, 0.6], "ZYX", [0.56, 0.21, -0.28])
-    within(absolute_error(shown(car, 0.7, "body:body"), expected), 64 * EPSILON, "pose off")
+    within(absolute_error(shown(car, 0.7, "body:body"), expected), 64 * EPSILON, "entries of the pose")
 
 
 def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(car, recorded):
@@ -119,7 +119,7 @@ def phases(page: Page, rows: np.ndarray, leave_out: str = "") -> dict[str, list]
 def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
     free, friction = recorded.evaluate("page.wheels.map(({phases}) => phases)")
     begin, end = friction["sticks"][0]
-    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-4, "instant, s")  # rows are 0.01 s apart
+    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-4, "begin of it, s")  # rows are 0.01 s apart
     beyond(end, 1.3, "end of the first stick, s")
     assert free == {"sticks": [], "slides": [], "transitions": []}
 
@@ -129,7 +129,7 @@ def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase
     found = phases(recorded, rows)
     instants = read_table("paper_friction_events")["t"][1:]
     assert len(found["transitions"]) == len(instants) == 37
-    within(absolute_error(found["transitions"], instants), 0.1, "instants, s")  # the distance of two rows
+    within(absolute_error(found["transitions"], instants), 0.1, "instants of all, s")  # the distance of two rows
     assert len(found["sticks"]) == (read_table("paper_friction_events")["mode"] == 0).sum()
     assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37
 
@@ -141,7 +141,7 @@ def test_a_stick_shorter_than_the_rows_begins_and_ends_where_the_spin_is_zero(re
     names = ["time", "omega_z", "friction_mode", "n_events"]
     rows = np.rec.fromarrays([t, omega, np.sign(omega), 2.0 * (t > 0.525)], names=names)
     (stick,) = phases(recorded, rows)["sticks"]
-    within(absolute_error(stick, [0.523, 0.527]), 1e-12, "instants, s")
+    within(absolute_error(stick, [0.523, 0.527]), 1e-12, "begin and end of the stick, s")
     assert phases(recorded, rows, leave_out="n_events")["sticks"] == []
 
 
@@ -152,7 +152,7 @@ def test_the_force_points_along_lambda(recorded, scenes):
       return force.up.clone().set(0, 0, 1).applyQuaternion(force.quaternion).toArray();
     }""")
     force = np.array([scenes["friction"][500][f"lambda_{k}"] for k in (1, 2, 3)])
-    within(abs(direction @ force / np.linalg.norm(force) - 1), 1e-12, "cosine off 1")
+    within(abs(direction @ force / np.linalg.norm(force) - 1), 1e-12, "cosine between arrow and force off 1")
 
 
 @pytest.mark.parametrize(
