@@ -22,6 +22,7 @@ from values import (  # noqa: E402
     formula,
     moments,
     ready,
+    refusal,
     scale,
     single,
     spin,
@@ -101,6 +102,9 @@ def values(arguments: list[str]) -> dict[str, str]:
         found |= {name: repr(value) for name, value in moments(solid, **size).items()}
     if float(found.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
+    own = {name: takes[name].number_of(found.get(name, v.start)) for name, v in variables("parameter").items()}
+    if fault := refusal(own):
+        raise Fault(fault)
     stop, interval = (float(found.get(name, v.start)) for name, v in RUN.items())
     if interval > stop / 2:
         raise Fault(f"output_interval = {interval:g} s is too long: at least two have to fit into the {stop:g} s.")

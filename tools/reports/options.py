@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "examples" / "python"))
-from values import Parser  # noqa: E402
+from values import Fault, Parser, suggestion  # noqa: E402
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results, which is kept under version control."""
@@ -17,9 +17,17 @@ EVERY = "accuracy stability speed vehicles others validation physics"
 NAMES = tuple(name for name in EVERY.split() if (EXAMPLES / OF.get(name, "")).exists())
 
 
+def report(name: str) -> str:
+    """A name; Fault if there is none such."""
+    if name not in (*NAMES, "all"):
+        meant = suggestion(name, dict.fromkeys(NAMES, ""))
+        raise Fault(f'there is no report "{name}"; there are {", ".join(NAMES)} and all.{meant}')
+    return name
+
+
 def arguments() -> argparse.Namespace:
     parser = Parser(prog="scripts/report", description=DESCRIPTION)
-    parser.add_argument("names", nargs="+", metavar="NAME", choices=(*NAMES, "all"), help=", ".join((*NAMES, "all")))
+    parser.add_argument("names", nargs="+", metavar="NAME", type=report, help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write into docs/results")
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")

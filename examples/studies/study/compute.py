@@ -37,7 +37,8 @@ FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
 BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
 PIECES = 16  # a chunk during which a worker died is divided into so many
-PATIENCE = 60  # s for the first worker to appear
+PATIENCE = 1800  # s for the first worker to appear, on a loaded machine or in a cluster's queue
+ANSWER = 300  # s for a scheduler to answer; the address may be wrong
 # Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
 DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 
@@ -90,7 +91,7 @@ def fill(
     if doubt := doubtful(study, axes, description):
         print(f"study: warning: {doubt}", file=sys.stderr)
     crew = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
-    with crew as running, Client(running, timeout="30s") as client:
+    with crew as running, Client(running, timeout=ANSWER) as client:
         with tempfile.TemporaryDirectory() as folder:
             # A new name per run: workers still read modules from the file of an earlier run, which must not change.
             upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")

@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
@@ -169,7 +170,7 @@ def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mappi
     there = {name: v.description or "" for name, v in known.items() if v.causality in causalities}
     for name in names:
         if name not in there:
-            hint = suggestion(name, there) or f" There are {', '.join(there)}."
+            hint = suggestion(name, there) or " docs/variables.md lists them."
             kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
             raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
 
@@ -282,7 +283,7 @@ class Study:
 
     def check(self, variables: Mapping[str, Variable]) -> None:
         """StudyError if a name is unknown or the study does not suit the FMU."""
-        from values import MOMENTS, bodies
+        from values import MOMENTS, bodies, suggestion
 
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(n for m in self.parsed.values() for n in m.variables), *self.history], READABLE, variables)
@@ -303,7 +304,11 @@ class Study:
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
         for fault, text in (
             (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
-            (self.body not in (None, *bodies()), f"There is no body '{self.body}'; there are {', '.join(bodies())}."),
+            (
+                self.body not in (None, *bodies()),
+                f"There is no body '{self.body}'; there are {', '.join(bodies())}."
+                + suggestion(self.body or "", dict.fromkeys(bodies(), "")),
+            ),
             (fixed, f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out."),
             (parts, f"The values of {parts} must be whole numbers."),
             (words, f"The values of {words} must be true or false, 1 or 0."),
@@ -320,3 +325,21 @@ class Study:
         ):
             if fault:
                 raise StudyError(text)
+
+    def refusal(self, variables: Mapping[str, Variable]) -> str:
+        """The sentence by which the FMU refuses the last wheel, if it refuses all."""
+        from values import moments, refusal
+
+        def starts(name: str) -> bool:  # with its value of the grid or list
+            return self.branch_at is None or not can_change(variables[name])
+
+        same = {name: v.preset for name, v in variables.items() if v.causality == "parameter"} | self.values
+        varied = {name: xs for name, xs in self.varied.items() if name in same and starts(name)}
+        text = ""
+        for xs in product(*varied.values()) if self.grid else zip(*varied.values(), strict=True):
+            own = same | dict(zip(varied, xs, strict=True))
+            if self.body:
+                own |= moments(self.body, own["m"], own["r_0"], own["r"])
+            if not (text := refusal(own)):
+                break
+        return text

@@ -17,7 +17,7 @@ from typing import Self
 EXAMPLES = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(EXAMPLES / "skeleton"), str(EXAMPLES.parent / "python")]
 from describe import Variable, read  # noqa: E402
-from values import Fault, limited, number, single, suggestion, variables  # noqa: E402
+from values import Fault, limited, number, refusal, single, suggestion, variables  # noqa: E402
 
 # Of the road, as the wheel checks them; every vehicle takes them.
 ROAD = ("s", "slope", "slope_direction", "mu_max", "mu_slide")
@@ -126,7 +126,8 @@ def value(vehicle: str, argument: str) -> tuple[str, str | float]:
         raise Fault(f'"{argument}" is not of the form name=value; --help lists the names.')
     if name in words:
         if text not in words[name]:
-            raise Fault(f"{name} = {text} is not one of {', '.join(words[name])}.")
+            meant = suggestion(text, dict.fromkeys(words[name], ""))
+            raise Fault(f"{name} = {text} is not one of {', '.join(words[name])}.{meant}")
         return name, text
     if of := numbers.get(name):
         return name, WHEEL[name].number_of(text) if name in ROAD else checked(of, number(name, text, of.unit))
@@ -161,6 +162,9 @@ def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
         slide, most = (run[f"{name}{side}"] or run[name] for name in ("mu_slide", "mu_max"))
         if slide > most:
             raise Fault(f"mu_slide{side} = {slide:g}: it must be at most mu_max{side} = {most:g}.")
+    road = {name: run[name] for name in ROAD if name in every(vehicle)}
+    if fault := refusal({name: v.preset for name, v in WHEEL.items()} | road):
+        raise Fault(fault)
     return run
 
 
