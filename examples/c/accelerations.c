@@ -1,5 +1,5 @@
 /* Accelerations and forces of the paper's wheel at one instant, without FMI: with friction, under a drive torque, and
- * held at omega_z = 0. docs/c_header.md says how to compile it. Fixed axes X, Y, Z with Z up; SI units. */
+ * held at omega_z = 0. docs/c_header.md: how to compile it. Fixed axes X, Y, Z with Z up; SI units. */
 #include <stdio.h>
 #include "wheel_equations.h"
 

@@ -31,6 +31,6 @@ def read(unit: FMU2Slave, *names: str) -> list[float]:
 
 
 def verdict(passed: bool, what: str) -> None:
-    """Prints pass or fail; the exit status says the same."""
+    """Prints pass or fail; the exit status is the same."""
     print(f"{'pass' if passed else 'fail'}: {what}")
     sys.exit(not passed)

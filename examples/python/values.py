@@ -254,12 +254,12 @@ def variables(description: str | bytes, *causalities: str) -> dict[str, Variable
 
 
 def wheels() -> dict[str, dict[str, Any]]:
-    """The ready wheels: name -> title, source, parameters in SI; `start`, of a ready case, is how the wheel moves."""
+    """The presets: name -> title, source, parameters in SI; `start`, of a preset case, is how the wheel moves."""
     return json.loads(WHEELS.read_text(encoding="utf-8"))
 
 
-def ready(name: str) -> dict[str, float]:
-    """The parameters of a ready wheel, and the paper's spin and start in proportion to its radius."""
+def preset(name: str) -> dict[str, float]:
+    """The parameters of a preset, and the paper's spin and start in proportion to its radius."""
     if name not in wheels():
         meant = suggestion(name, {n: str(wheel["title"]) for n, wheel in wheels().items()})
         raise Fault(f'There is no wheel "{name}"; there are {", ".join(wheels())}.{meant}')
@@ -268,7 +268,7 @@ def ready(name: str) -> dict[str, float]:
 
 
 def thrown(name: str) -> dict[str, float]:
-    """Road and start of a ready case, none of a wheel alone."""
+    """Road and start of a preset case, none of a wheel alone."""
     return {n: float(value) for n, value in wheels()[name].get("start", {}).items()}
 
 
@@ -286,7 +286,7 @@ def spin(v: float, r_0: float, r: float, theta: float = math.pi / 2, psi_dot: fl
 
 
 def bodies() -> dict[str, dict[str, Any]]:
-    """The ready bodies: name -> title, source, and J_x = J_y and J_z over m, as parts of the squares of lengths."""
+    """The bodies: name -> title, source, and J_x = J_y and J_z over m, as parts of the squares of lengths."""
     return json.loads(BODIES.read_text(encoding="utf-8"))
 
 
@@ -298,7 +298,7 @@ def formula(parts: Mapping[str, str]) -> str:
 
 
 def moments(body: str, m: float = 20.0, r_0: float = 0.3, r: float = 0.05) -> dict[str, float]:
-    """J_x, J_y, J_z in kg m2 of a ready body of this mass in kg and these radii in m; of the paper's, if not given."""
+    """J_x, J_y, J_z in kg m2 of a body of this mass in kg and these radii in m; of the paper's, if not given."""
     if body not in bodies():
         meant = suggestion(body, {n: str(one["title"]) for n, one in bodies().items()})
         raise Fault(f'There is no body "{body}"; there are {", ".join(bodies())}.{meant}')

@@ -33,7 +33,7 @@ def table(results: xr.Dataset) -> xr.Dataset:
 
 
 def draw(small: xr.Dataset, stem: Path) -> Path:
-    """Two maps: how far the wheel goes down, and in flat colours where the model ends."""
+    """Two maps: how far the wheel comes down, and in flat colours where the run ends."""
     wheel = wheel_of(small)
     limit, faster = upright_limit(wheel), scale(wheel, s=-1)
     text = "smallest angle to the ground within {:.3g} s [deg]"

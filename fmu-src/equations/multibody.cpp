@@ -220,7 +220,7 @@ void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
 
 // (24) with -[B_dot]{q_dot} - decay_rate [B]{q_dot} in the last rows, and a height that decays to that of (32)
 // (Baumgarte). Both added terms vanish on the constraints. The rate of the slip is that of [B]{q_dot}; its axes turn
-// with psi. N is infinite where friction wedges the wheel.
+// with psi. N is infinite where the wheel jams.
 template <bool slides, bool guided>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(*scene, y, slides);

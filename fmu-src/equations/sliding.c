@@ -144,7 +144,7 @@ INLINED double direction_of(const WheelScene* scene, const double* reduced, doub
   const WheelParameters* w = &scene->wheel;
   Body b = body_of(scene, reduced, yield);
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
-  /* against the force of grip, for which u_x = u_y = 0; its size does not matter */
+  /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
   double found = NAN, least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
   for (int i = 0; i < parts; ++i) { /* from `against` to both sides in turn */
@@ -178,7 +178,7 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
   to_fixed(c, c->v_1 + u_x, u_y - h * c->omega_1, X_dot, Y_dot);
 }
 
-/* Returns N, infinite where friction wedges the wheel. */
+/* Returns N, infinite where the wheel jams. */
 INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, double yield) {
   Body b = body_of(scene, y, yield);
   const Carrier* c = &b.carrier;

@@ -73,7 +73,7 @@ typedef enum WheelGround {
 /* Whether the material point at the contact rests on the ground, or slides over it. */
 typedef enum WheelContactMode { WHEEL_GRIPS, WHEEL_SLIDES } WheelContactMode;
 
-/* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it; it grips. One that slides
+/* All that a right-hand side needs besides the state. `wheel_scene` makes one and checks it; it rolls. One that slides
  * belongs to the formulations with a slip, and others ignore its mu_slide. */
 typedef struct WheelScene {
   WheelParameters wheel;
@@ -122,12 +122,12 @@ typedef struct WheelDynamics {
  * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
 typedef struct WheelSlip {
   double N;            /* N, normal force */
-  double room;         /* 1 without sliding friction; where it falls to zero, friction wedges the wheel: no N holds */
+  double room;         /* 1 without sliding friction; where it falls to zero, the wheel jams: no N >= 0 exists */
   double growth, turn; /* m/s2 */
   double settling;     /* m/s2, -d(turn)/d(chi) */
 } WheelSlip;
 
-/* Below this WheelSlip.room friction wedges the wheel: no normal force holds it. */
+/* Below this WheelSlip.room the wheel jams: no normal force satisfies the equations. */
 #define WHEEL_LEAST_ROOM 1e-5
 
 /* One formulation: how its state vector y is started, moved and read. */
@@ -139,7 +139,7 @@ typedef struct WheelFormulation {
   double (*derivative)(const WheelScene* scene, const double* y, double* y_dot);
   /* Where y holds omega_z, (21), and theta. */
   int spin_index, tilt_index;
-  /* Where y holds |u|, m/s, and chi behind it; -1: the wheel grips. u = |u| (cos(chi), sin(chi)) is the slip, the
+  /* Where y holds |u|, m/s, and chi behind it; -1: the wheel rolls. u = |u| (cos(chi), sin(chi)) is the slip, the
    * velocity of the wheel's material point at the contact, along e1 and across it to the left. At |u| = 0 the rate of
    * chi is written as zero: it is any, or infinite. */
   int slip_index;
@@ -150,7 +150,7 @@ typedef struct WheelFormulation {
   void (*reduce)(const double* y, double* reduced);
   /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
   void (*stop_spin)(const WheelParameters* wheel, double* y);
-  /* The end of the slip: y becomes a state of the form that grips; null in these. */
+  /* The end of the slip: y becomes a state of the form that rolls; null in these. */
   void (*grip)(const WheelParameters* wheel, double* y);
   /* See wheel_slip. */
   WheelSlip (*slip)(const WheelScene* scene, const double* reduced, double chi);
@@ -187,8 +187,8 @@ WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi)
 WheelSlip wheel_guided_slip(const WheelScene* scene, const double* reduced, double chi);
 
 /* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
- * Of several that nearest to the direction against the force that grip would need. NaN where there is none: the ground
- * does not press, or friction wedges the wheel. */
+ * Of several that nearest to the direction against the force that rolling would need. NaN where there is none: the
+ * ground does not press, or the wheel jams. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 double wheel_guided_slip_direction(const WheelScene* scene, const double* reduced);
 

@@ -88,7 +88,7 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
   return instance;
 }
 
-// After the end of a run the message says what happened to the wheel, which helps a user more than a call state.
+// After the end of a run the message names the end, which helps a user more than the call state.
 fmi2Status Instance::refuse(const Rule& rule) {
   const bool slave = wheel.kind() == wheel::Kind::co_simulation;
   if (!rule.is_for(wheel.kind()))

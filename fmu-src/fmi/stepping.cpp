@@ -38,7 +38,7 @@ fmi2Status last_status(const Instance& i) { return i.wheel.has_ended() ? fmi2Dis
 
 constexpr long long no_status = 0x100000000;  // beyond what a caller can pass
 
-// Each function knows one kind of status and answers every other kind with Discard, numbers outside of the enumeration
+// Each function has one kind of status and answers every other kind with Discard, numbers outside of the enumeration
 // too, which cannot be read as its type.
 template <class Value, class Read>
 fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& asked, long long known_kind,

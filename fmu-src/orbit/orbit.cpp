@@ -67,14 +67,14 @@ double Orbit::fastest_turn() const {
   return std::fmax(turn, roll) / (T2_ - T1_);
 }
 
-// y from the frame of the integrated half to the fixed axes; way: from the half's begin to O.
+// y from the frame of the integrated half to the fixed axes; way: from the start of the half to O.
 void Orbit::turn_by(const Half& half, Complex way, double* y) {
   y[psi] += half.psi_sum;
   y[phi] += half.phi_sum;
   set_place(y, half.place + half.turn * way);
 }
 
-// psi, phi and the way of O are proportional to the time, along a chord that turns half as fast as the wheel.
+// psi, phi and the displacement of O are proportional to the time, along a chord that turns half as fast as the wheel.
 void Orbit::read_circle(double t, double* y) const {
   const double half = 0.5 * steady_rate_[psi] * t, shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
   std::copy_n(first_, states, y);

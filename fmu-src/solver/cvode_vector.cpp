@@ -1,4 +1,4 @@
-// The vector's operations: those that CVODE asks for, as loops of a length that the compiler knows. One block of memory
+// The vector's operations: those that CVODE asks for, as loops of a length known at compile time. One block of memory
 // holds SUNDIALS's record and the numbers.
 #include <algorithm>
 #include <cmath>

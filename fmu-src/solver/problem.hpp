@@ -33,7 +33,7 @@ struct Settling {
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
 // nothing else.
 struct Problem {
-  int states;  // 8 or 12: loops have a length that the compiler knows
+  int states;  // 8 or 12: the length of loops, known at compile time
   void* owner;
   // y_dot = f(t, y). Returns the margin, the least value of the functions watched by it at (t, y), infinite if there is
   // none; NaN where the rates are not finite: the solver then tries a smaller step.

@@ -1,8 +1,8 @@
 // One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
 //
 // Engines behind one interface (step.hpp): CVODE's Adams and BDF, DOP853, and collocation.
-// Knows no wheel and no FMI. Time is the owner's own clock (s). Steps never see the times at which results are read, so
-// the communication grid cannot change a bit of the solution; only a stop time that the owner sets cuts a step short.
+// Independent of wheel and FMI. Time is the owner's own clock (s). Steps never see the times at which results are read,
+// so the communication grid cannot change a bit of the solution; only a stop time of the owner cuts a step short.
 #pragma once
 
 #include <cmath>
@@ -86,7 +86,7 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  const char* failure_ = "the solver was not started";  // null: the engine knows
+  const char* failure_ = "the solver was not started";  // null: see the engine
   double known_until_ = 0;                              // s
   int fallen_ = 0;                                      // which of the watched functions fell below zero last
   double first_stop_ = never;                           // s, latest end of the first step after a start

@@ -8,7 +8,7 @@
 namespace wheel {
 namespace {
 
-// The laws to try where the wheel loses its grip: without spin, with rolling friction or brake, first that it is held.
+// The laws to try where the wheel starts to slide: without spin, with rolling friction or brake, first that it is held.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
   return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;

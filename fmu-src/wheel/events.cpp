@@ -108,7 +108,7 @@ bool always_ends(const Setup&) { return true; }
 
 // N over the weight.
 double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
-// N is infinite where friction wedges the wheel.
+// N is infinite where the wheel jams.
 double wedging_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // rad from where the wheel counts as flat.
 double height_of(const Setup& setup, const double* y, double) {

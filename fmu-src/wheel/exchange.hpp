@@ -37,7 +37,7 @@ bool has_occurred(const EventRow& row, const Setup& setup, const Run& run);
 // does. Writes run.
 bool decide(Wheel& wheel);
 
-// Whether a run can begin: another solver cannot learn that the model ends where it starts. Else a message.
+// Whether a run can begin: model exchange has no way to report an end at the start. Else a message.
 bool starts_inside(const Wheel& wheel);
 
 }  // namespace wheel

@@ -17,8 +17,8 @@ void count_event(Wheel& wheel, Event event, double t);
 
 // Counts and logs a change between held, positive and negative spin since the law `before`.
 void log_transition(Wheel& wheel, const WheelFriction& before);
-// The same between grip and sliding since `slid`; goes_on: the slip has not ended, so that a wheel that still slides
-// has not lost its grip anew.
+// The same between rolling and sliding since `slid`; goes_on: the slip has not ended, so that a wheel that still slides
+// has not started to slide anew.
 void log_contact(Wheel& wheel, bool slid, bool goes_on);
 // Once per run, where mu_required is found above 1 at t, s, own clock, and y, and mu_max sets no limit. Looks a few
 // times in the wheel's own time, so that it costs nothing noticeable. Writes run.grip_due.

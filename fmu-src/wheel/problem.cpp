@@ -10,7 +10,7 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
-// Of few states are only the equations of a wheel that grips. States beyond those of the equations rest.
+// Of few states are only the equations of a wheel that rolls. States beyond those of the equations rest.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;

@@ -41,7 +41,7 @@ enum class Event : int {
   lost_grip,        // the wheel needs a friction coefficient above mu_max
   slip_ends,        // the slip falls to zero
   lost_contact,     // N falls below zero, or rises above it while the ground pulls
-  jams,             // friction wedges the wheel that slides: no N holds
+  jams,             // no N satisfies the equations of the sliding wheel
   fell_flat,
   count
 };

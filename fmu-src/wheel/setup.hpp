@@ -49,7 +49,7 @@ struct Origin {
 struct Setup {
   Kind kind;
   double start_time;                    // s
-  const WheelFormulation* formulation;  // while the wheel grips
+  const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
   WheelParameters wheel;                // on a level road and with s = 0: the road in force is part of the run
   FrictionLaw friction_law = exact_law;

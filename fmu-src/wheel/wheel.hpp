@@ -24,7 +24,7 @@ struct Solution {
   orbit::Orbit orbit;
   Shape orbit_shape;              // of `orbit`
   double orbit_until = none;      // s: how far `orbit` is the present run's and can be read
-  const char* failure = nullptr;  // why the last call failed; null: the solver knows
+  const char* failure = nullptr;  // why the last call failed; null: see the solver
 };
 
 struct Wheel {

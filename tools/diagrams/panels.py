@@ -2,7 +2,7 @@
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
 per stick phase, a tick at the top for each change of sign of omega_z. A slide has a bar on the time axis between thin
-lines where grip is lost and returns. A panel returns the clauses by which the caption explains it.
+lines where sliding starts and stops. A panel returns the clauses by which the caption explains it.
 """
 
 from typing import Any

@@ -28,7 +28,7 @@ SETTINGS = variables("parameter", "input")
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MARGIN = 2.0  # mm beside a caption
 PITCH = 3.4  # mm from one line of a caption to the next
-FALL_BY_ROUNDING = "An exactly upright wheel tips: rounding decides when, and to which side; guided=true holds it."
+FALL_BY_ROUNDING = "Rounding decides when and to which side an upright wheel tips; guided=true keeps it upright."
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def unlike_paper(scene: Scene) -> list[str]:
 
 
 def warnings_of(scenes: Sequence[Scene]) -> list[str]:
-    """A wheel that cannot exist, which the model rolls all the same; a fall that hangs on rounding."""
+    """A wheel that cannot exist, which the model rolls all the same; a fall that rounding decides."""
     own = {name: scenes[0].value(name) for name in ("m", "r_0", "r", *MOMENTS)}
     found = ["r > r_0: this torus intersects itself."] * (own["r"] > own["r_0"])
     about = doubt(own)
@@ -126,8 +126,8 @@ def fate_of(scene: Scene) -> list[str]:
     fastest = f"it slides {often}, at up to {scene.slip.max():.3g} m/s"
     said += [fastest if slides else "it never slides"] * can_slide
     said += [] if scene.rest is None else [f"it stands from {scene.rest:.3g} s on"]
-    said += [f"the wheel {scene.ending}, where the model ends"] * bool(scene.ending)
-    said += ["rounding alone tips it, at a time and to a side of chance; guided=true holds it"] * scene.by_rounding
+    said += [f"the wheel {scene.ending}, where the run ends"] * bool(scene.ending)
+    said += ["rounding alone tips it and decides time and side; guided=true keeps it upright"] * scene.by_rounding
     return said + [scene.trust] * bool(scene.trust)
 
 

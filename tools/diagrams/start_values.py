@@ -21,7 +21,7 @@ from values import (  # noqa: E402
     bodies,
     formula,
     moments,
-    ready,
+    preset,
     refusal,
     scale,
     single,
@@ -42,7 +42,7 @@ RUN = {
 CHECKS = {"estimate": "1", "methods": "2", "no": "3"}
 ABOUT_CHECK = "After the run: 1 estimate of its error, 2 methods: error over time of each, 3 no estimate"
 CHECK = Variable("error", "run", "Integer", "", CHECKS["estimate"], "", "", ABOUT_CHECK)
-ABOUT_SPEED = "Speed at the start, forward: upright, along X, from the origin, unless the start values are given"
+ABOUT_SPEED = "Initial speed, forward: upright, along X, from the origin, unless the start values are given"
 SPEED = Variable("v", "run", "Real", "m/s", "", "", "", ABOUT_SPEED)
 
 
@@ -56,19 +56,19 @@ def known() -> dict[str, Variable]:
 
 
 def usage() -> str:
-    """The comment of scripts/run, the ready wheels and all names."""
+    """The comment of scripts/run, the presets and all names."""
     _, *lines = (ROOT / "scripts" / "run").read_text(encoding="utf-8").splitlines()
     comment = [line[2:] for line in takewhile(lambda line: line.startswith("#"), lines)]
-    ready = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
-    ready += ["", "Bodies, whose moments of inertia follow from m, r_0 and r:"]
+    presets = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
+    presets += ["", "Bodies, whose moments of inertia follow from m, r_0 and r:"]
     for name, body in bodies().items():
-        ready.append(f"  {name:20s}{body['title']}: J_z = {formula(body['J_z'])}, J_x = J_y = {formula(body['J_x'])}")
+        presets.append(f"  {name:20s}{body['title']}: J_z = {formula(body['J_z'])}, J_x = J_y = {formula(body['J_x'])}")
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
-    return "\n".join([*comment, "", *ready, "", "The values that can be given:", *rows])
+    return "\n".join([*comment, "", *presets, "", "The values that can be given:", *rows])
 
 
 def values(arguments: list[str]) -> dict[str, str]:
-    """What is given, by name, in SI; of a ready wheel also friction and times, in proportion to its radius."""
+    """What is given, by name, in SI; of a preset also friction and times, in proportion to its radius."""
     takes, names = known(), wheels()
     found, typed = {}, []
     for argument in arguments:
@@ -90,7 +90,7 @@ def values(arguments: list[str]) -> dict[str, str]:
     wheel, solid = (given.pop(kind, "") for kind in ("A preset wheel", "A body"))
     given = {name: takes[name].value_of(text) for name, text in given.items()}
     if wheel:
-        body = ready(wheel)
+        body = preset(wheel)
         body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
         body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
         found = {name: repr(value) for name, value in (body | thrown(wheel)).items()}

@@ -68,7 +68,7 @@ def encoded(body: Body) -> dict:
 
 
 def wheel_itself(wasm: Path) -> dict:
-    """What the live page holds: the wheel as a WebAssembly module, ready wheels and bodies."""
+    """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
     guid = re.search(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
     return {"wasm": base64_of(wasm.read_bytes()), "guid": guid[1], "wheels": wheels(), "bodies": ready_bodies()}
 

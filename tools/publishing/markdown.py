@@ -49,7 +49,7 @@ def number(value: object) -> str:
 
 
 def table(frame: Any) -> str:
-    """Of a pandas table, the first column to the left, the others to the right; what it does not know stays empty."""
+    """Of a pandas table, the first column to the left, the others to the right; unknown values stay empty."""
     if frame.empty:
         return "None."
     cells = frame.convert_dtypes().astype(object)

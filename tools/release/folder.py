@@ -71,4 +71,4 @@ def publish(fmu: Path, site: Path) -> None:
     print(f"{out} holds {', '.join(sorted(path.name for path in out.iterdir()))}. To tag it:")
     print(f"  git tag -a v{number} -F {out / 'NOTES.md'} --cleanup=whitespace")
     print(f"  git push origin v{number}")
-    print(".github/workflows/release.yml attaches the files of its own build; elsewhere attach those of the folder.")
+    print(".github/workflows/release.yml attaches the same files, built anew; elsewhere attach those of the folder.")

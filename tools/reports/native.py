@@ -57,7 +57,7 @@ class Master:
     def made(
         self, values: Values, step: float, steps: int, tolerance: float | None = None, table: Array | None = None
     ) -> Solve:
-        """A run, ready to be repeated: its seconds, headline outputs at the start and after each step, counters.
+        """A run, ready to be repeated: its seconds, initial headline outputs and those after each step, counters.
 
         table: steps x (orders + 1) x the inputs of SINES. With paces, they get the seconds of each step."""
         inputs = () if table is None else SINES

@@ -30,9 +30,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("names", nargs="+", metavar="NAME", type=report, help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write into docs/results")
-    target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick: to try it out")
-    parser.add_argument("--render", action="store_true", help="measure nothing: publish what the data in docs/ say")
-    parser.add_argument("--check", action="store_true", help="change nothing: are the pages those of the data?")
+    target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick")
+    parser.add_argument("--render", action="store_true", help="measure nothing: write pages from the data in docs/")
+    parser.add_argument("--check", action="store_true", help="change nothing: exit status 1 where page and data differ")
     return parser.parse_args()
 
 

@@ -63,7 +63,7 @@ def stays_up(report: Report) -> Row:
             right.plot(spins, largest, ".-", color=colour, ms=2.5, label=f"start: {degrees}°")
         right.axvline(CRITICAL, color=style.GREY, lw=0.8)
         style.note(right, f"critical spin\n{CRITICAL:.4g} rad/s", (CRITICAL, 60), (4, 0), color=style.GREY)
-        title, x = "Below the limit any lean grows, but nothing falls flat", r"spin $|\omega_z|$ at the start [rad/s]"
+        title, x = "Below the limit any lean grows, but no wheel lies flat", r"initial spin $|\omega_z|$ [rad/s]"
         label(right, x, "largest lean in 20 s [deg]", title, legend="lower left", ylim=(0, 95))
     fast = run(report, 4, 2e-3, theta_start=start, phi_dot_start=-20.0)
     turns = np.flatnonzero(np.diff(np.sign(fast["theta_dot"])))  # two in each period
@@ -193,7 +193,7 @@ def least_jamming(wheel: Wheel) -> float:
 
 @part(3)
 def brake_hold_steer(report: Report) -> Row:
-    """three ways to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""
+    """three means to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""
     brake, torque = (Schedule(((0.0, {}), (1.0, {name: 20.0}))) for name in ("M_brake", "M_3"))
     ways = {
         "M_brake = 20 N m from 1 s on": (style.BLUE, "-", {"inputs": brake}),

@@ -53,7 +53,7 @@ def suspended_wheel(report: Report) -> dict[str, object]:
 
 @part(60)
 def sliding(report: Report) -> pd.DataFrame:
-    """wheels that slide: three ways to stop the suspended wheel; a car on a road that is slippery on the right"""
+    """wheels that slide: three stops of the suspended wheel; a car on a road that is slippery on the right"""
     run, split = manoeuvres("suspended")["abs"], car_judges.SPLIT
     table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
     forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}

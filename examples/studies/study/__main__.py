@@ -26,7 +26,7 @@ from values import (  # noqa: E402
     limited,
     number,
     parted,
-    ready,
+    preset,
     single,
     suggestion,
     variables,
@@ -88,7 +88,7 @@ def study_of(arguments: argparse.Namespace) -> Study:
     if bool(grid) == bool(rows):
         raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
     derived = MOMENTS if arguments.body else ()
-    values = {name: x for name, x in arguments.ready.items() if name not in {*grid, *rows, *derived}}
+    values = {name: x for name, x in arguments.preset.items() if name not in {*grid, *rows, *derived}}
     values |= {name: typed(name).number_of(text) for name, text in pairs("--set", arguments.set).items()}
     names = ("history", "stop_time", "interval", "tolerance", "branch_at", "body")
     fields = {name: getattr(arguments, name) for name in names}
@@ -155,19 +155,19 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu")
     add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
-    add("--overwrite", action="store_true", help="discard the results and files that are there")
+    add("--overwrite", action="store_true", help="discard existing results and files")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
-    add("--check", type=count, metavar="N", help="run N wheels again at the tightest tolerance; states their error")
+    add("--check", type=count, metavar="N", help="run N wheels again at the tightest tolerance; state their error")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
-    arguments.ready = ready(arguments.wheel) if arguments.wheel else {}
+    arguments.preset = preset(arguments.wheel) if arguments.wheel else {}
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
     return arguments
 
 
 def study_file(path: Path, wheel: str | None = None, body: str | None = None) -> dict[str, object]:
-    """The names that a study's file defines: `study`, of a ready wheel or body if given, perhaps `table` and `draw`."""
+    """The names that a study's file defines: `study`, of a preset or body if given, perhaps `table` and `draw`."""
     sys.path.insert(0, str(path.resolve().parent))
     content = runpy.run_path(str(path))
     if not isinstance(content.get("study"), Study):
@@ -193,7 +193,7 @@ def conduct(arguments: argparse.Namespace) -> None:
     if "://" not in out:
         stem = Path(out.removesuffix(".zarr"))
     if "table" in content and arguments.netcdf:
-        raise StudyError("--netcdf: this study has a table of its own, which is written as NetCDF.")
+        raise StudyError("--netcdf: this study writes its own table as NetCDF.")
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}
     exports = {Path(f"{stem}{end}"): end for end in asked if asked[end]}
     written = [*exports, *[Path(f"{stem}.nc")] * ("table" in content)]

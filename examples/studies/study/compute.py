@@ -106,7 +106,7 @@ def fill(
         group.attrs[MARK] = mark
         common = replace(study, grid={}, list={}, measures=study.restated({}))
         task = partial(run_chunk, upload.name, common, place, mark)
-        quiet = {} if sys.stderr.isatty() else {"disable": True}  # else as TQDM_DISABLE says
+        quiet = {} if sys.stderr.isatty() else {"disable": True}  # else by TQDM_DISABLE
         with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=0.2, **quiet) as bar:
             for region, result in finished(client, task, partial(points, axes), missing(group)):
                 if result is not None:

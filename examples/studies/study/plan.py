@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[3]
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
-KINDS = ("grid", "list")  # the ways to list wheels
+KINDS = ("grid", "list")  # how wheels are listed
 POINT = "wheel"  # the dimension of a list
 PLANE_ANGLE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables
 MADE_OF = {PLANE_ANGLE: ("theta",), SLIP: ("slip_x", "slip_y")}
@@ -48,8 +48,8 @@ class Status(IntEnum):
     lifted_off = 2  # N came to 0
     refused = 3  # a start value or a parameter is impossible
     failed = 4  # the run ended with an error, or the worker process died
-    grip = 5  # mu_required came to mu_max
-    jammed = 6  # friction wedged the sliding wheel
+    grip = 5  # mu_required reached mu_max
+    jammed = 6  # the sliding wheel jammed
 
 
 OWN = {  # results of every study: empty value, type, unit, label, description
@@ -226,13 +226,13 @@ class Study:
         return run(self, out, **how)
 
     def scaled(self, wheel: str) -> Study:
-        """The same study of a ready wheel (examples/wheels.json): a wheel of the paper's shape would move alike.
+        """The same study of a preset (examples/wheels.json): a wheel of the paper's shape would move alike.
 
         Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. StudyError if it sets such a parameter.
         """
-        from values import MOMENTS, ready, scale
+        from values import MOMENTS, preset, scale
 
-        body = {n: x for n, x in ready(wheel).items() if not (self.body and n in MOMENTS)}
+        body = {n: x for n, x in preset(wheel).items() if not (self.body and n in MOMENTS)}
         factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
             raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")

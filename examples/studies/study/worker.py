@@ -42,7 +42,7 @@ NUMBERS = {"Real": float, "Integer": int, "Boolean": int}
 Region = tuple[slice, ...]  # of the results: the wheels of a chunk
 MARK = "caller"  # the attribute by which a worker recognizes the caller's store
 _turn = Lock()  # a worker's threads take turns at the instance
-# Words of the FMU's message, for each way in which a run ends early.
+# Words of the FMU's message, for each end of a run.
 ENDINGS = {
     "lies flat": Status.flat,
     "lifted off": Status.lifted_off,

@@ -2,7 +2,7 @@
  *
  * Body axes x forward, y left, z up, origin in the centre of mass B at the height h_B; the hub of wheel i at rest at
  * p = (x_i, y_i, R - h_B). Along x and y of the chassis the hub's bushing holds the wheel; along z the strut, with d
- * the wheel's way up from rest, e the way beyond the free travel, and F_i its share of the weight:
+ * the wheel's travel up from rest, e that beyond the free travel, and F_i its share of the weight:
  *
  *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other end of the bar))
  *

@@ -1,4 +1,4 @@
-/* A brake whose capacity M follows the pedal, and three ways to control it.
+/* A brake whose capacity M follows the pedal, and three controllers.
  *
  *   M' = (M_ref - M) / T_brake,   M_ref = M_pedal (none), or at most M_per_N N (in proportion to the normal force)
  *

@@ -1,5 +1,5 @@
 /* fmi2Functions of an example: co-simulation, inputs with derivatives up to order 3, outputs with first derivatives,
- * snapshots. Nothing here knows which example it is. */
+ * snapshots. Nothing here depends on the example. */
 #include "fmi2Functions.h"
 
 #include <cstring>

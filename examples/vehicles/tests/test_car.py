@@ -163,6 +163,6 @@ def test_a_closed_form_is_printed_where_what_it_assumes_holds_and_a_run_beyond_i
     assert car_judges.judged("launch", turns, LAUNCH)[1] == "the car turns"
     heavier = LAUNCH.changed(m_B=1300.0, B_0=0.0)  # of which the run is not
     found, _ = car_judges.judged("launch", table, heavier)
-    assert "acceleration of the launch departs from its closed form by more than 2 %" in found[0].fault
+    assert "acceleration of the launch deviates from its closed form by more than 2 %" in found[0].fault
     lines, faults = car_judges.findings(table, heavier.changed(t_brake=1e6))
     assert faults and any("closed form" in line for line in lines)

@@ -24,7 +24,7 @@ WHEELS = {"left": "left", "right": "right"}
 COMPARED = options.file("axle")["compared"]
 SCENES = manoeuvres("axle")
 STRAIGHT, CLOTHOID, TRAILING, ROLLING_OUT = SCENES.values()
-OFF, SOFT = 0.05, 4.0  # departure from the rigid axle with the standard links, of the range; it grows as their softness
+OFF, SOFT = 0.05, 4.0  # deviation from the rigid axle with the standard links, of the range; it grows as their softness
 OF_WHEEL = {"m": 20.0, "J_x": 0.9, "J_z": 1.8}  # the wheels' defaults
 
 
@@ -52,17 +52,17 @@ def without_closed_form(scene: Manoeuvre) -> str:
     c = constants(scene)
     driven, turning, rises = c.M_left or c.M_right, c.b * abs(c.omega), np.cos(c.slope_direction)
     if c.t_couple or c.X_start or c.Y_start:
-        return "it is that of links that carry from the start, on the wheels' axle"
+        return "it assumes links that carry from the start, on the wheels' axle"
     if softness(scene) > SOFT:
-        return f"it is that of rigid links, and these are softer than 1/{SOFT:g} of the standard ones"
+        return f"it assumes rigid links, and these are softer than 1/{SOFT:g} of the standard ones"
     if c.slope and abs(rises) < 1 - 1e-9:
-        return "on a slope it is that of an axle that rolls up or down"
+        return "on a slope it assumes an axle that rolls up or down"
     if c.slope and (c.s or c.S or c.M_left != c.M_right or c.omega):
-        return "on a slope it is that of a balanced axle that rolls straight without friction"
+        return "on a slope it assumes a balanced axle that rolls straight without friction"
     if c.s and (c.S or driven or not c.v > turning > 0):
-        return "with rolling friction it is that of a balanced axle without torque, on a bend wider than half its track"
+        return "with rolling friction it assumes a balanced axle without torque, on a bend wider than half its track"
     if c.S and (driven or not c.v**2 + c.omega**2 > 0):
-        return "with mass ahead of the axle it is that of an axle in motion, without torque"
+        return "with mass ahead of the axle it assumes an axle in motion, without torque"
     return ""
 
 
@@ -150,10 +150,10 @@ def verdict(table: Table, scene: Manoeuvre) -> tuple[bool, list[str]]:
     if (most := AXLE.grip(table)) > DRY_ROAD:
         return False, [f"Failed: a wheel requires a friction coefficient of {beyond_dry(most)}."]
     slides = any(np.any(table[f"{w}.{n}"]) for w in WHEELS for n in ("slip_x", "slip_y"))
-    if why := without_closed_form(scene) or "it is that of wheels that never slide" * slides:
+    if why := without_closed_form(scene) or "it assumes wheels that never slide" * slides:
         return True, [f"No closed form to compare with: {why}."]
     off = AXLE.distance(table, {n: table[f"rigid.{n}"] for n in COMPARED} | {"time": table["time"]})
-    bound, said = OFF * max(1.0, softness(scene)), f"departure from the rigid axle in closed form: {100 * off:.2g} %"
+    bound, said = OFF * max(1.0, softness(scene)), f"deviation from the rigid axle in closed form: {100 * off:.2g} %"
     if off > bound:
         return False, [f"Failed: {said} of the range, more than {100 * bound:.2g} %."]
     return True, [f"Largest {said} of the range."]

@@ -23,7 +23,7 @@ OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 
 def beside_alone(run: Run, course: Manoeuvre, fmus: Fmus) -> Run:
-    """With the wheel without the controller, up to where its model ends, in columns alone.NAME."""
+    """With the wheel without the controller, up to where its run ends, in columns alone.NAME."""
     rows, how = len(run.table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
     how["start_values"] = START | road(course)
     alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
@@ -46,7 +46,7 @@ def judge(table: Table) -> dict[str, float]:
     radius = np.sqrt(c + (a**2 + b**2) / 4)
     return {
         "fall": fall_time(table, "alone."),
-        "line_tilt": tilt[line].max(),  # deg, largest departure from upright
+        "line_tilt": tilt[line].max(),  # deg, largest deviation from upright
         "line_heading": np.degrees(np.abs(table["psi"][line])).max(),  # deg, from the line's direction
         "circle_radius": radius,  # m, of the circle through the last turn
         "circle_scatter": np.abs(np.hypot(x - a / 2, y - b / 2) - radius).max(),  # m, from that circle
@@ -73,7 +73,7 @@ def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
     radius, scatter, tilt = (found[f"circle_{name}"] for name in ("radius", "scatter", "tilt"))
     held = f"leaning by up to {tilt:.1f} degrees; its last turn is within {scatter:.2g} m of a circle of {radius:.4g} m"
     if max(abs(radius - wanted), scatter) < 0.05 * wanted:
-        return True, [single, f"Controlled it stays up, {held}; {wanted:g} m was asked for."]
+        return True, [single, f"Controlled it stays up, {held}; {wanted:g} m was set."]
     return False, [single, f"Failed: the controller keeps it from falling over, {held}, not of {wanted:g} m."]
 
 

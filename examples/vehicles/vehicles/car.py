@@ -73,7 +73,7 @@ def failures(table: Table, manoeuvre: Manoeuvre) -> Iterator[str]:
     moves = any(table[f"{w}.{n}"][-1] for w in WHEELS for n in ("omega_z", "slip_x", "slip_y"))
     found = {
         "sets_off": (moved < LIMITS["at_rest"], f"the car does not set off: it moves by {moved:.2g} m"),
-        "stands": (moves, f"the car does not stand at the end: it moves at {table['v'][-1]:.2g} m/s"),
+        "stands": (moves, f"the car still moves at the end, at {table['v'][-1]:.2g} m/s"),
         "keeps_course": (turned > LIMITS["off_course"], f"the car turns by up to {np.degrees(turned):.0f} deg"),
         "does_not_roll_back": (back > LIMITS["roll_back"], f"a wheel rolls back by {back:.3g} m"),
         "on_path": (off > LIMITS["off_path"], f"the car leaves its path by up to {off:.2g} m"),

@@ -83,7 +83,7 @@ class Finding(NamedTuple):
         """A difference beyond the bound, in words; empty where there is none."""
         if self.exact is None or abs(self.measured - self.exact) <= self.share * max(abs(self.exact), self.least):
             return ""
-        return f"the {self.what} departs from its closed form by more than {100 * self.share:g} %"
+        return f"the {self.what} deviates from its closed form by more than {100 * self.share:g} %"
 
 
 def force(table: Table, wheels: list[str], k: int = 3) -> np.ndarray:
@@ -202,7 +202,7 @@ def bend(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Fi
 
 
 def closure(table: Table, _manoeuvre: Manoeuvre, _c: SimpleNamespace) -> Iterator[Finding]:
-    """The figure of eight after one lap: distance of the rear point from its start, and the way driven."""
+    """The figure of eight after one lap: distance of the rear point from its start, and the distance driven."""
     p, at = table["p"], table["X_R"] + 1j * table["Y_R"]
     gap = float(np.abs(np.interp(2 * np.pi, p, at) - at[0]))
     yield Finding("figure of eight: gap after one lap", "m", gap)
@@ -234,7 +234,7 @@ def _first(t: np.ndarray, x: np.ndarray, level: float) -> float:
 
 
 def step(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
-    """Response times from the instant at which the steering has gone half its way, overshoot and gains."""
+    """Response times from the instant at which the steering is half done, overshoot and gains."""
     t, last = table["time"], settled(table)
     end = {name: float(np.mean(table[name][last])) for name in ("delta", "v", "omega", "a_y", "roll")}
     half, tenth, most = (_first(t, table["delta"], share * end["delta"]) for share in (0.5, 0.1, 0.9))
@@ -370,11 +370,11 @@ ASSUMPTIONS: dict[str, Holds] = {
     "the full drive torque does not act alone for a second": lambda t, run, _c: full_torque(t, run),
     "the chassis still pitches": lambda t, run, _c: still(t, pulling(t, run), "pitch"),
     "the brakes alone do not stop it": lambda t, run, _c: full_brakes(t, run),
-    "it does not stand": lambda t, run, _c: held(t, run),
+    "the car does not stand still": lambda t, run, _c: held(t, run),
     "it is not steady at the end": lambda t, _run, _c: still(t, settled(t), "delta", "v", "omega", "roll"),
     "the speed does not rise from 5 s to 22 s at one steer angle": lambda t, run, _c: rises(t, run),
     "the right wheels do not lock, or a left one slides": lambda t, run, _c: locks(t, run),
-    "more than the brakes acts": lambda _t, run, _c: not (run["M_0"] or run["delta_0"] or run["k_v"]),
+    "the brakes do not act alone": lambda _t, run, _c: not (run["M_0"] or run["delta_0"] or run["k_v"]),
 }
 LINKS = ("the links begin later", "the bushings are softer than half the layout's", "left and right are not alike")
 ROLLS = (*LINKS, "a strut reaches its stop", "a wheel slides")
@@ -382,14 +382,14 @@ AHEAD = (*ROLLS, "the road rises across the car", "the car turns", "it follows a
 AROUND = (*ROLLS, "the road is not level", "it follows a path")
 ASSUMES: dict[str, tuple[str, ...]] = {
     "launch": (*AHEAD, "the full drive torque does not act alone for a second", "the chassis still pitches"),
-    "standing": (*AHEAD, "it does not stand"),
+    "standing": (*AHEAD, "the car does not stand still"),
     "braking": (*AHEAD, "the brakes alone do not stop it"),
     "bend": (*AROUND, "it is not steady at the end"),
     "circle": (*AROUND, "the speed does not rise from 5 s to 22 s at one steer angle"),
     "step": (*AROUND, "it is not steady at the end"),
     "split": (
         *(*LINKS, "a strut reaches its stop", "the road rises across the car", "it follows a path"),
-        *("the right wheels do not lock, or a left one slides", "more than the brakes acts"),
+        *("the right wheels do not lock, or a left one slides", "the brakes do not act alone"),
     ),
 }
 

@@ -32,7 +32,7 @@ def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     other = again.endings[0].time if again.endings else None
     if other is not None and abs(other - end) < 2 * asked.h + 0.02 * end:
         return ""
-    instead = "goes on" if other is None else f"ends at t = {other:.3f} s"
+    instead = "continues" if other is None else f"ends at t = {other:.3f} s"
     if not run.endings and other is None:
         if of.grip(again.table) > DRY_ROAD:
             return ""

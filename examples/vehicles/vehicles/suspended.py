@@ -27,7 +27,7 @@ CONTROLS = ("locked", "ideal")  # brakes beside the anti-lock controller, by the
 CENTRE = (("X", "X_O", "X_B"), ("v", "X_O_dot", "X_B_dot"))
 BRAKES = {"abs": "the anti-lock controller", "ideal": "the ideal brake", "locked": "a brake that locks it"}
 OF_BRAKE = ("X", "v", "X_O_dot", "X_B_dot", "omega_z", "M_brake", "slip_x")
-CLOSE = 0.002  # a way this near to its closed form, relative, agrees with it: a row of the table is 0.05 %
+CLOSE = 0.002  # a distance this near to its closed form, relative, agrees with it: a row of the table is 0.05 %
 
 
 def mass(run: Manoeuvre = LAUNCH) -> float:
@@ -69,13 +69,13 @@ def filled(x: np.ndarray, rows: int) -> np.ndarray:
 
 
 def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
-    """Its state at the end; no road has the grip for a wheel that requires more than a dry one."""
+    """Its state at the end; no road gives more friction than a dry one."""
     least, most = table["lambda_3"].min(), SUSPENDED.grip(table)
     if most > DRY_ROAD:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
     if run.name == "abs":
         return stops(table, run)
-    speed = f"Speed at the end: {table['X_O_dot'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
+    speed = f"Final speed: {table['X_O_dot'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
     return True, [f"{speed}; friction required: {most:.2f}."]
 
 
@@ -94,10 +94,10 @@ ASSUMED = {  # by the closed forms of a stop: by its words where it does not hol
 
 
 def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
-    """The three ways to stop beside the closed forms, and whether the controller does what it is for."""
+    """Three stops beside their closed forms, and whether the controller does its task."""
     ways = {name: way(table, run, name) for name in ("locked", "ideal", "abs")}
     if late := [name for name, found in ways.items() if not np.isfinite(found)]:
-        return False, [f"Failed: it does not stand by {run.stop:g} s: {', '.join(late)}."]
+        return False, [f"Failed: not at rest by {run.stop:g} s: {', '.join(late)}."]
     broken = next((words for words, holds in ASSUMED.items() if not holds(run)), "")
     exact = {} if broken else {"locked": sliding_way(table, run), "ideal": gripping_way(table, run)}
     slid = {name: bool(np.any(table[f"{name}.slip_x"])) for name in CONTROLS}
@@ -111,10 +111,10 @@ def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
     faults = ["under the ideal brake the wheel slides"] * slid["ideal"]
     faults += [f"{name}: {100 * off[name]:.1f} % off the closed form" for name in off if off[name] > CLOSE]
     faults += ["the pedal does not lock the wheel"] * (not slid["locked"])
-    gains = run["mu_slide"] < run["mu_max"]  # else a locked wheel has all the grip there is
+    gains = run["mu_slide"] < run["mu_max"]  # else a locked wheel brakes as hard as any
     faults += ["the anti-lock controller stops no shorter than a locked wheel"] * (gains and less <= 0)
     best = not broken and ways["abs"] < shortest(table, run)
-    faults += ["the anti-lock controller stops shorter than grip allows"] * best
+    faults += ["the anti-lock controller stops shorter than friction allows"] * best
     return not faults, [*lines, *(f"Failed: {fault}." for fault in faults[:1])]
 
 

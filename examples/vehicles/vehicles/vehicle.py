@@ -1,4 +1,4 @@
-"""A vehicle: FMUs that are built and wired, and what is recorded of their run, added to it, and judged.
+"""A vehicle: FMUs that are built and wired, the record of their run, and its verdict.
 
 A body with hubs names its variables as the wheels do, with _ and the wheel's name behind.
 """
@@ -181,5 +181,5 @@ def upright(x: float, y: float, heading: float, speed: float, turn: float, R: fl
 
 
 def road(manoeuvre: Manoeuvre) -> dict[str, float]:
-    """The wheels' parameters of the road: slope, friction, and the grip that a wheel checks, if any."""
+    """The wheels' parameters of the road: slope, friction, and the friction that a wheel checks, if any."""
     return {name: manoeuvre[name] for name in ROAD}

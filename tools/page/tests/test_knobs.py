@@ -1,4 +1,4 @@
-"""Sliders and the numbers beside them; ready bodies and wheels; the critical spin; held buttons; slides."""
+"""Sliders and the numbers beside them; preset bodies and wheels; the critical spin; held buttons; slides."""
 
 import sys
 
@@ -19,7 +19,7 @@ COIN = {"m": 0.0085, "r_0": 0.011775, "r": 0.0011, "J_x": 3.556802865e-7, "J_y":
 
 
 def choose(page, name: str) -> None:
-    """A ready body or wheel."""
+    """A preset body or wheel."""
     page.evaluate("document.querySelector('#wheel').open = true")
     page.locator("#ready").select_option(name)
     page.evaluate("page.live.frame()")
@@ -179,12 +179,12 @@ def test_a_fall_that_hangs_on_rounding_says_so(live):
 def test_a_ready_wheel_says_which_spin_and_friction_it_has_set(live):
     start(live, s=0.02)
     choose(live, "wheel:coin")
-    note, ready = live.locator("#scaled").inner_text(), live.locator("#ready")
-    assert ready.input_value() == "wheel:coin" and "Council Regulation" in ready.get_attribute("title")
+    note, preset = live.locator("#scaled").inner_text(), live.locator("#ready")
+    assert preset.input_value() == "wheel:coin" and "Council Regulation" in preset.get_attribute("title")
     assert "φ̇ is −10.4 rad/s" in note and "s is 0.0011 m" in note
     assert live.evaluate("[page.live.value('phi_dot_start'), page.live.value('s')]") == [-10.4, 0.0011]
     live.evaluate("page.live.setStart('m', 0.009); page.live.frame()")
-    assert not live.locator("#scaled").is_visible() and ready.input_value() == ""
+    assert not live.locator("#scaled").is_visible() and preset.input_value() == ""
 
 
 def test_a_brake_lasts_as_long_as_it_is_held_however_late_the_page_draws(live):

@@ -2,7 +2,7 @@
 // are written so that reading gives the same bits; an angle in degrees where that holds, as for every slider.
 //   #theta=89.5deg&phi_dot=-2.9&s=0.03&M_3=1:-6,1.5:0&show=path+force&diagram=path&t=3.2
 // `_start` is left out of names; `M_3=1:-6,1.5:0` are changes at 1 s and 1.5 s; `kept.` precedes the plan of the motion
-// that is kept beside; `body` gives the moments of inertia of a ready one; `step` is a step of the story. What is not
+// that is kept beside; `body` gives the moments of inertia of a preset one; `step` is a step of the story. What is not
 // there is as at first.
 import {PORTRAITS} from '#diagrams';
 import {variables} from '#dom';
@@ -183,7 +183,7 @@ export class Link {
     }
   }
 
-  /** Shows what the address says; a wrong one gives the first step of the story and a sentence. */
+  /** Shows the state in the address; a wrong one gives the first step of the story and a sentence. */
   follow() {
     this.text = location.hash.slice(1);
     try {

@@ -1,8 +1,8 @@
-// Pictures of what is shown: the scene with its labels above, the diagrams beneath, as one PNG or as a film, whose
+// Pictures of the page: the scene with its labels above, the diagrams beneath, as one PNG or as a video, whose
 // pictures are drawn at instants of the motion and written into a WebM file with these instants.
 import {$, colour, make} from '#dom';
 
-/** Kinds of film: the width in pixels, at most that of the scene on the screen, and pictures per second. */
+/** Kinds of video: the width in pixels, at most that of the scene on the screen, and frames per second. */
 export const FILMS = {
   small: {text: 'small: 640 pixels wide', width: 640, rate: 20},
   large: {text: 'as large as on the screen', width: Infinity, rate: 30},
@@ -118,7 +118,7 @@ function streamOf(canvas, rate) {
 }
 
 /**
- * A film of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
+ * A video of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
  * draw. kind: of FILMS; left(seconds): called before each picture with the time that the rest will take; false ends it.
  */
 export async function film(page, {width, rate}, left) {

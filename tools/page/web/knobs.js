@@ -63,9 +63,9 @@ export const NOW = [
 ];
 /** Buttons that act as long as they are held: text, variable, value in parts of the torque from the spin, tooltip. */
 export const HELD = [
-  ['◀ push back', 'M_3', (spin) => -(spin || -1), 'Push against the way it rolls, about the axle'],
+  ['◀ push back', 'M_3', (spin) => -(spin || -1), 'Torque about the axle against the rolling direction'],
   ['brake', 'M_brake', () => 1, 'A dry brake that holds, up to its torque'],
-  ['push forward ▶', 'M_3', (spin) => spin || -1, 'Push on the way it rolls, about the axle'],
+  ['push forward ▶', 'M_3', (spin) => spin || -1, 'Torque about the axle in the rolling direction'],
 ];
 /** Their torque, N m: 6 N m for the paper's wheel, for others as their weight times radius. */
 export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
@@ -76,7 +76,7 @@ const OTHERS = new Map([
   ['X_O_start', [-100, 100]], ['Y_O_start', [-100, 100]], ['guided', [0, 1]]
 ]);
 
-/** [lowest, highest] in SI of what may be set at the start, or (now) while it rolls; undefined for all else. */
+/** [lowest, highest] in SI of a start value, or (now) of what can change while it rolls; undefined for all else. */
 export function limitsOf(name, now = false) {
   const found = (now ? NOW : [...START, ...GRIP, ...WHEEL, ...NOW]).find((one) => one.name === name);
   if (!found) return now ? undefined : OTHERS.get(name);

@@ -18,10 +18,10 @@ const NAMES = ['This wheel', 'Kept'];
 /**
  * What the reader has chosen: plan, what is done to the wheel; kept: the plan of the motion beside, or null; step 0, 1
  * ... of the story, if it is open; scene: the number of the one that was loaded. refusal, trouble: why an address or a
- * start cannot be; scaled: what a ready wheel has set; wanted: whether the motion is still to be computed.
+ * start cannot be; scaled: what a preset has set; wanted: whether the motion is still to be computed.
  */
 export class LiveWheel {
-  /** wheels: the ready ones. */
+  /** wheels: the presets. */
   constructor(page, fmu, wheels) {
     Object.assign(
         this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null, scaled: null});
@@ -105,7 +105,7 @@ export class LiveWheel {
     this.change('fitted');
   }
 
-  /** The moments of a ready body of this mass and size. */
+  /** The moments of a body of this mass and size. */
   setBody(body) {
     derive(Object.assign(this.plan, {body}));
     this.change('fitted');

@@ -1,4 +1,4 @@
-// The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of ready bodies
+// The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of the bodies
 // (examples/bodies.json), which follow from mass and radii, and whether any mass within the wheel's outline has the
 // given ones, as in examples/python/values.py; the critical spin. SI.
 import {live} from '#dom';
@@ -10,7 +10,7 @@ const ROUNDING = 1e-9;  // of a moment: an excess that is no fault
 export const bodies = live?.bodies ?? {};
 export const MOMENTS = ['J_x', 'J_y', 'J_z'];
 
-/** {J_x, J_y, J_z} of a ready body. */
+/** {J_x, J_y, J_z} of a body. */
 export function momentsOf(name, {m, r_0, r}) {
   const lengths = {r_0, r, R: r_0 + r};
   const [J_x, J_z] = ['J_x', 'J_z'].map((moment) => {

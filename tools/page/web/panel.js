@@ -150,7 +150,7 @@ function makeHeld([text, name, part, what], live) {
   return button;
 }
 
-/** The list of ready bodies, whose moments follow from mass and radii, and of ready wheels. */
+/** The list of bodies, whose moments follow from mass and radii, and of preset wheels. */
 function setUpReady(live, wheels) {
   const host = $('#ready');
   const option = (kind) => ([name, {title, source}]) =>
@@ -208,7 +208,7 @@ function setUpCritical(live) {
   };
 }
 
-/** The friction that rolling needs beside the grip that there is, or the slip. */
+/** The friction coefficient that rolling needs beside the static one, or the slip. */
 function setUpGrip(live) {
   const host = $('#grip-now');
   const write = onChange((text) => host.replaceChildren(...subscripted(text)));
@@ -250,7 +250,7 @@ function setUpTerms(live) {
   };
 }
 
-/** What the page says of the last run and of a wrong address, and the box that keeps a motion. */
+/** The message on the last run and on a wrong address, and the box that keeps a motion. */
 function setUpNotes(live) {
   $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
   const [message, refusal, doubt, scaled] = ['#message', '#refusal', '#doubt', '#scaled'].map((place) => {
@@ -268,7 +268,7 @@ function setUpNotes(live) {
     refusal(live.refusal);
     const fault = doubtOf(wheel);
     const chance = tipsByRounding(live.wheel.table) &&
-        'Rounding alone tips this exactly upright wheel: when, and to which side, is chance. On its hub carrier (guided) it stays.';
+        'Rounding alone tips this exactly upright wheel and decides time and side. On its hub carrier (guided) it stays upright.';
     doubt(fault ? `${fault} Choose a body: its moments follow.` : chance || null);
     scaled(live.scaled);
   };

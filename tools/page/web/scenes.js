@@ -76,29 +76,29 @@ export function chapters(parameters) {
         (wheel) => `Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held
           wheel nods and turns, as a coin that pivots on a table: in the first orange band,
           ${whileHeld(wheel, 'time').toFixed(2)} s long, its heading turns by ${
-            (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. What does not move takes
-          no energy: E stays level while it is held.`,
+            (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. Friction at rest dissipates
+          nothing: E stays level while it is held.`,
         'Play it at a quarter of the speed. Look at E where the band is orange, and where it is not.', {speed: 0.25}),
     step(
         'Pushed and braked', 'theta=88deg&phi_dot=-4&M_3=1:-4,3:0&M_brake=6:4,7.5:0&diagram=path',
         (wheel) => `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from
           ${joules(wheel, 1)} J to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake acts and takes it down to
-          ${joules(wheel, 7.5)} J. Between them, and after, the energy stays what it is.`,
-        'Hold a button anywhere on the way: the past stays, and a new future is computed at once.'),
+          ${joules(wheel, 7.5)} J. Otherwise the energy is constant.`,
+        'Hold a button at any instant: the past stays, and a new future is computed at once.'),
     step(
         'Thrown with backspin',
         'theta=90deg&phi_dot=10&slip_x=5.5&mu_max=0.35&mu_slide=0.3&stop=4&diagram=path&show=follow+path+force',
         (wheel) =>
             `Thrown forward at ${speed(wheel)} m/s and spinning backward at ${spin(wheel)} rad/s, the wheel slides
           (purple): its point at the contact moves over the road by the slip, the purple arrow, and the road brakes it with
-          μ<sub>s</sub> N. At ${grips(wheel).toFixed(1)} s the slip is used up. It grips, and comes back at ${
+          μ<sub>s</sub> N. At ${grips(wheel).toFixed(1)} s the slip is used up. It rolls, and comes back at ${
                 speed(wheel, 1)} m/s.`,
-        'Give it less backspin: φ̇ = 4 rad/s, u<sub>x</sub> = 3.4 m/s. It grips while it still goes forward.',
+        'Give it less backspin: φ̇ = 4 rad/s, u<sub>x</sub> = 3.4 m/s. It rolls while still moving forward.',
         {speed: 0.5}),
     step(
         'What ends a run', 'phi_dot=0',
-        ({table}) => `Let go without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
-          along a circle instead of a point: the equations end there, and so does the run. It also ends where the wheel
+        ({table}) => `Released without spin, it falls. At ${table.end.toFixed(2)} s it lies flat and touches the ground
+          along a circle instead of a point: the equations no longer hold, and the run ends. It also ends where the wheel
           would lift off (N = 0), where it jams while it slides, and, with a static friction coefficient μ but no
           kinetic one μ<sub>s</sub>, where rolling would need more.`,
         'Give it a little spin φ̇. How little lets it come up again?'),
@@ -120,8 +120,8 @@ export function scenes(parameters, steps) {
       'Thin disc', disc.plan,
       'No tube (r = 0), homogeneous: the rolling disc of the textbooks, low and wobbling like a coin.'
     ],
-    ['Wet road', wet.plan, 'The paper\'s wheel with μ = 0.45 for grip and μ_s = 0.4 for sliding: it slides twice.'],
-    ['Backspin', thrown.plan, 'Thrown forward at 2 m/s, spinning backward: it slides, grips and comes back.'],
+    ['Wet road', wet.plan, 'The paper\'s wheel with μ = 0.45 (static) and μ_s = 0.4 (kinetic): it slides twice.'],
+    ['Backspin', thrown.plan, 'Thrown forward at 2 m/s, spinning backward: it slides, rolls and comes back.'],
     ['Driven', driven.plan, 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, the brake with 4 N m from 6 s to 7.5 s.'],
   ].map(([label, plan, about]) => ({label, plan, about}));
 }

@@ -1,6 +1,6 @@
 // One motion as columns over time (SI, fixed axes X, Y, Z, Z up), and its values between the rows.
 // Angles are never wrapped, so between two rows they are interpolated as numbers, not as attitudes: a slerp would take
-// the short way round, and a fast wheel would seem to run backwards.
+// the shorter turn, and a fast wheel would seem to run backwards.
 
 /** Bytes of a base64 text. */
 export const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
