@@ -187,6 +187,7 @@ def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     # A nanny restarts a worker that died. LocalCluster would close it for good if, this long after a death, it happened
     # to be starting again after another one.
     options |= {"distributed.deploy.lost-worker-timeout": "1000 hours", "distributed.worker.preload": [DEAF]}
-    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "ERROR"}
+    # On a loaded machine a worker logs an error where the cluster closes during its heartbeat.
+    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "CRITICAL"}
     with dask.config.set(options), LocalCluster(**processes, dashboard_address=":0") as local:
         yield local
