@@ -62,11 +62,6 @@ FORMULATIONS = ("reduced", "euler", "multibody", "sliding", "multibody_sliding")
 REDUCED, EULER, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (
     Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS
 )
-# The same on a hub carrier.
-GUIDED, GUIDED_EULER, GUIDED_MULTIBODY, GUIDED_SLIDING, GUIDED_MULTIBODY_SLIDING = (
-    Formulation.in_dll(LIBRARY, f"wheel_guided{name}".removesuffix("_reduced"))
-    for name in ("_reduced", *(f"_{name}" for name in FORMULATIONS[1:]))
-)
 for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
     function.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]

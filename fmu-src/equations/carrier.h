@@ -97,23 +97,19 @@ static inline Moment moment_of(const WheelScene* scene, const Inertia* I, const 
   return M;
 }
 
-/* A horizontal vector, along e1 and to the left of it, in fixed axes; and back. */
+/* A horizontal vector, along e1 and to the left of it, in fixed axes. */
 static inline void to_fixed(const Carrier* c, double along, double left, double* X, double* Y) {
   *X = along * c->cos_psi - left * c->sin_psi;
   *Y = along * c->sin_psi + left * c->cos_psi;
-}
-
-static inline void from_fixed(const Carrier* c, double X, double Y, double* along, double* left) {
-  *along = X * c->cos_psi + Y * c->sin_psi;
-  *left = Y * c->cos_psi - X * c->sin_psi;
 }
 
 /* External force along the road, load and weight. Sine and cosine of psi are needed only where there is one. */
 static inline void road_force(const WheelScene* scene, const Carrier* c, double* along, double* left) {
   const WheelParameters* w = &scene->wheel;
   double F_X = scene->load.F[0] + w->m * w->g_X, F_Y = scene->load.F[1] + w->m * w->g_Y;
-  *along = *left = 0;
-  if (F_X != 0 || F_Y != 0) from_fixed(c, F_X, F_Y, along, left);
+  int none = F_X == 0 && F_Y == 0;
+  *along = none ? 0 : F_X * c->cos_psi + F_Y * c->sin_psi;
+  *left = none ? 0 : F_Y * c->cos_psi - F_X * c->sin_psi;
 }
 
 /* Two numbers in one store: a solver reads them so, and a processor waits where it reads two stores at once. */

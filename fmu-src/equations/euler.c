@@ -24,10 +24,10 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 }
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */
-static inline double rate(const WheelScene* scene, const double* y, double* y_dot, int guided) {
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
-  double N = (guided ? &wheel_guided : &wheel_reduced)->derivative(scene, reduced, rates);
+  double N = wheel_reduced.derivative(scene, reduced, rates);
   y_dot[X_O] = rates[R_X_O];
   y_dot[Y_O] = rates[R_Y_O];
   y_dot[PSI] = y[PSI_DOT];
@@ -39,9 +39,6 @@ static inline double rate(const WheelScene* scene, const double* y, double* y_do
   return N;
 }
 
-static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
-static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
-
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   double reduced[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
@@ -50,26 +47,26 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   out->phi_dot = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
 }
 
-static inline void forces(const WheelScene* scene, const double* y, WheelDynamics* out, int guided) {
+static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   double reduced[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
-  (guided ? &wheel_guided : &wheel_reduced)->dynamics(scene, reduced, out);
+  wheel_reduced.dynamics(scene, reduced, out);
 }
-
-static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
-static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
   y[SPIN] = 0;
 }
 
-/* clang-format off */
 const WheelFormulation wheel_euler = {
-    .states = WHEEL_REDUCED_STATES, .spin_index = SPIN, .tilt_index = THETA, .slip_index = -1, .start = start,
-    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
-    .stop_spin = stop_spin};
-const WheelFormulation wheel_guided_euler = {
-    .states = WHEEL_REDUCED_STATES, .spin_index = SPIN, .tilt_index = THETA, .slip_index = -1, .start = start,
-    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
-    .stop_spin = stop_spin};
+    .states = WHEEL_REDUCED_STATES,
+    .start = start,
+    .derivative = derivative,
+    .spin_index = SPIN,
+    .tilt_index = THETA,
+    .slip_index = -1,
+    .kinematics = kinematics,
+    .dynamics = dynamics,
+    .reduce = reduce,
+    .stop_spin = stop_spin,
+};

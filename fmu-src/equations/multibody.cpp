@@ -151,9 +151,7 @@ Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
 
 // A hub carrier keeps psi and theta: these two constraints stand in the place of the moments across the axle, where
 // alone their multipliers act.
-template <bool guided>
 void guide(Matrix9& K, Vector9& column) {
-  if constexpr (!guided) return;
   K.middleRows<2>(3).setZero();
   K.middleCols<2>(3).setZero();
   K.block<2, 2>(3, 3).setIdentity();
@@ -167,14 +165,13 @@ struct Solution {
 };
 
 // A ground that pulls has no friction: only the brake's part is left.
-template <bool guided>
 Solution solve(const Instant& now, bool pulls) {
   const Multibody& s = now.s;
   const double mu = pulls ? 0 : now.scene.mu_slide;
   Vector9 column = now.column;
   if (now.scene.friction.kind == WHEEL_HELD) {  // tau is found from omega_z_dot = 0, linearly
     Matrix9 matrix = system_matrix(now, 0, mu);
-    guide<guided>(matrix, column);
+    if (now.scene.guided) guide(matrix, column);
     const Eigen::PartialPivLU<Matrix9> K(matrix);
     const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
     const double tau = -omega_z_dot(s, free) / s.Q.row(2).dot(unit.segment<3>(3));
@@ -184,22 +181,21 @@ Solution solve(const Instant& now, bool pulls) {
   const double kappa = wheel_kappa(&now.scene.friction, omega_z(s)), brake = now.scene.load.brake;
   column[about_axle] -= brake * kappa;
   Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, mu);
-  guide<guided>(matrix, column);
+  if (now.scene.guided) guide(matrix, column);
   const Vector9 unknowns = matrix.partialPivLu().solve(column);
   if (kappa == 0) return {unknowns, 0};
   return {unknowns, -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa};
 }
 
 // (24) under the scene's law of friction.
-template <bool guided>
 Solution solve(const Instant& now) {
   const WheelGround ground = now.scene.ground;
-  if (ground == WHEEL_GROUND_PULLS) return solve<guided>(now, true);
-  Solution presses = solve<guided>(now, false);
+  if (ground == WHEEL_GROUND_PULLS) return solve(now, true);
+  Solution presses = solve(now, false);
   if (ground == WHEEL_GROUND_PRESSES || (now.scene.friction.kind == WHEEL_HELD && !now.slides)) return presses;
   // sliding friction keeps its sign
-  const double N = (now.slides ? solve<guided>(now, true) : presses).unknowns[lambda_3];
-  return N <= 0 ? solve<guided>(now, true) : presses;
+  const double N = (now.slides ? solve(now, true) : presses).unknowns[lambda_3];
+  return N <= 0 ? solve(now, true) : presses;
 }
 
 double spin_rate(const Instant& now, const Solution& solution) {
@@ -221,13 +217,13 @@ void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
 // (24) with -[B_dot]{q_dot} - decay_rate [B]{q_dot} in the last rows, and a height that decays to that of (32)
 // (Baumgarte). Both added terms vanish on the constraints. The rate of the slip is that of [B]{q_dot}; its axes turn
 // with psi. N is infinite where the wheel jams.
-template <bool slides, bool guided>
+template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(*scene, y, slides);
   const Multibody& s = now.s;
   const double rate = decay_rate(s);
   if (!slides) now.column.tail<3>() -= rate * (s.B * s.q_dot);
-  const Solution solution = solve<guided>(now);
+  const Solution solution = solve(now);
   const double N = solution.unknowns[lambda_3];
   Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
   velocities = s.q_dot;
@@ -241,7 +237,7 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
   constexpr double usual = 100;  // weights
   if (N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
-  return solve<guided>(now, true).unknowns[lambda_3] / N < WHEEL_LEAST_ROOM ? INFINITY : N;
+  return solve(now, true).unknowns[lambda_3] / N < WHEEL_LEAST_ROOM ? INFINITY : N;
 }
 
 template <bool slides>
@@ -252,10 +248,10 @@ void kinematics(const WheelParameters* wheel, const double* state, WheelKinemati
           y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
 }
 
-template <bool slides, bool guided>
+template <bool slides>
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const Instant now = instant_of(*scene, y, slides);
-  const Solution solution = solve<guided>(now);
+  const Solution solution = solve(now);
   const auto& [x, tau] = solution;
   *out = {x[X_O],
           x[Y_O],
@@ -281,20 +277,23 @@ void reduce(const double* y, double* reduced) {
   if (slides) Eigen::Map<Vector2>(reduced + WHEEL_REDUCED_STATES) << y[speed], y[chi];
 }
 
-// clang-format off
-template <bool slides, bool guided>
+template <bool slides>
 constexpr WheelFormulation formulation = {
-    .states = WHEEL_MULTIBODY_STATES, .start = start<slides>, .derivative = derivative<slides, guided>,
-    .spin_index = spin, .tilt_index = theta, .slip_index = slides ? int{speed} : -1, .kinematics = kinematics<slides>,
-    .dynamics = dynamics<slides, guided>, .reduce = reduce<slides>, .stop_spin = stop_spin<slides>,
-    .grip = slides ? set_rolling_velocity : nullptr, .slip = guided ? wheel_guided_slip : wheel_slip,
-    .slip_direction = guided ? wheel_guided_slip_direction : wheel_slip_direction};
-// clang-format on
+    .states = WHEEL_MULTIBODY_STATES,
+    .start = start<slides>,
+    .derivative = derivative<slides>,
+    .spin_index = spin,
+    .tilt_index = theta,
+    .slip_index = slides ? int{speed} : -1,
+    .kinematics = kinematics<slides>,
+    .dynamics = dynamics<slides>,
+    .reduce = reduce<slides>,
+    .stop_spin = stop_spin<slides>,
+    .grip = slides ? set_rolling_velocity : nullptr,
+};
 
 }  // namespace
 }  // namespace wheel::paper
 
-const WheelFormulation wheel_multibody = wheel::paper::formulation<false, false>;
-const WheelFormulation wheel_multibody_sliding = wheel::paper::formulation<true, false>;
-const WheelFormulation wheel_guided_multibody = wheel::paper::formulation<false, true>;
-const WheelFormulation wheel_guided_multibody_sliding = wheel::paper::formulation<true, true>;
+const WheelFormulation wheel_multibody = wheel::paper::formulation<false>;
+const WheelFormulation wheel_multibody_sliding = wheel::paper::formulation<true>;

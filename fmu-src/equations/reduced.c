@@ -172,7 +172,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[Y_O] = motion->Y_O;
 }
 
-INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, int guided) {
+INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   AxleLaw law = law_of(scene, y[OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
   Accelerations a = move(&now.system, law);
@@ -183,8 +183,14 @@ INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, int
   return a.N;
 }
 
-static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
-static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
+/* Apart, so that nothing of one is computed for the other. */
+__attribute__((noinline)) static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) {
+  return rates(scene, y, y_dot, 1);
+}
+
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  return scene->guided ? guided_rates(scene, y, y_dot) : rates(scene, y, y_dot, 0);
+}
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
@@ -202,15 +208,12 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
   set_velocity(wheel, &c, &out->X_O_dot, &out->Y_O_dot);
 }
 
-INLINED void forces(const WheelScene* scene, const double* y, WheelDynamics* out, int guided) {
-  Instant now = instant_of(scene, y, guided);
+static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
+  Instant now = instant_of(scene, y, scene->guided);
   Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
   reaction_of(&scene->wheel, &now, &a, out->lambda);
   set_dynamics(scene, &now.carrier, &a, out);
 }
-
-static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
-static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
@@ -219,12 +222,15 @@ static void stop_spin(const WheelParameters* wheel, double* y) {
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
 
-/* clang-format off */
 const WheelFormulation wheel_reduced = {
-    .states = WHEEL_REDUCED_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = -1, .start = start,
-    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
-    .stop_spin = stop_spin};
-const WheelFormulation wheel_guided = {
-    .states = WHEEL_REDUCED_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = -1, .start = start,
-    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
-    .stop_spin = stop_spin};
+    .states = WHEEL_REDUCED_STATES,
+    .start = start,
+    .derivative = derivative,
+    .spin_index = OMEGA_3,
+    .tilt_index = THETA,
+    .slip_index = -1,
+    .kinematics = kinematics,
+    .dynamics = dynamics,
+    .reduce = reduce,
+    .stop_spin = stop_spin,
+};

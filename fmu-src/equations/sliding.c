@@ -53,13 +53,13 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   };
 }
 
-/* yield: 1, or 0 on a hub carrier, where no moment turns the wheel across its axle. */
-INLINED Body body_of(const WheelScene* scene, const double* y, double yield) {
+INLINED Body body_of(const WheelScene* scene, const double* y) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
   Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[PHI])};
   const Carrier* c = &b.carrier;
   Action* a = &b.given;
+  double yield = scene->guided ? 0 : 1; /* on a hub carrier no moment turns the wheel across its axle */
   double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p, F_x, F_y;
   road_force(scene, c, &F_x, &F_y);
   b.h = w->r_0 * c->sin_theta + w->r;
@@ -111,12 +111,7 @@ static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
 }
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi) {
-  Body b = body_of(scene, reduced, 1);
-  return slip_of(&scene->wheel, &b, chi);
-}
-
-WheelSlip wheel_guided_slip(const WheelScene* scene, const double* reduced, double chi) {
-  Body b = body_of(scene, reduced, 0);
+  Body b = body_of(scene, reduced);
   return slip_of(&scene->wheel, &b, chi);
 }
 
@@ -137,12 +132,12 @@ static double zero_of_turning(const WheelParameters* w, const Body* b, double lo
   return 0.5 * (lo + hi);
 }
 
-INLINED double direction_of(const WheelScene* scene, const double* reduced, double yield) {
+double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   const int parts = 180;
   static const Action none = {.brake = 0};
   const double part = 2 * 3.141592653589793 / parts, rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
-  Body b = body_of(scene, reduced, yield);
+  Body b = body_of(scene, reduced);
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
@@ -160,12 +155,6 @@ INLINED double direction_of(const WheelScene* scene, const double* reduced, doub
   return found;
 }
 
-double wheel_slip_direction(const WheelScene* scene, const double* reduced) { return direction_of(scene, reduced, 1); }
-
-double wheel_guided_slip_direction(const WheelScene* scene, const double* reduced) {
-  return direction_of(scene, reduced, 0);
-}
-
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   memset(y, 0, sizeof(double) * WHEEL_SLIDING_STATES);
   wheel_reduced.start(wheel, motion, y);
@@ -179,8 +168,8 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 }
 
 /* Returns N, infinite where the wheel jams. */
-INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, double yield) {
-  Body b = body_of(scene, y, yield);
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  Body b = body_of(scene, y);
   const Carrier* c = &b.carrier;
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]), X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
@@ -192,26 +181,20 @@ INLINED double rate(const WheelScene* scene, const double* y, double* y_dot, dou
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
-static double free_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 1); }
-static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) { return rate(scene, y, y_dot, 0); }
-
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   wheel_reduced.kinematics(wheel, y, out);
   set_velocity(&c, out->Z_O, y[SPEED] * cos(y[CHI]), y[SPEED] * sin(y[CHI]), &out->X_O_dot, &out->Y_O_dot);
 }
 
-INLINED void forces(const WheelScene* scene, const double* y, WheelDynamics* out, double yield) {
-  Body b = body_of(scene, y, yield);
+static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
+  Body b = body_of(scene, y);
   double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
   for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;
   set_dynamics(scene, &b.carrier, &m.a, out);
 }
-
-static void free_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 1); }
-static void guided_forces(const WheelScene* scene, const double* y, WheelDynamics* out) { forces(scene, y, out, 0); }
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_SLIDING_STATES); }
 
@@ -222,12 +205,16 @@ static void grip(const WheelParameters* wheel, double* y) {
   y[SPEED] = y[CHI] = 0;
 }
 
-/* clang-format off */
 const WheelFormulation wheel_sliding = {
-    .states = WHEEL_SLIDING_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = SPEED, .start = start,
-    .derivative = free_rates, .kinematics = kinematics, .dynamics = free_forces, .reduce = reduce,
-    .stop_spin = stop_spin, .grip = grip, .slip = wheel_slip, .slip_direction = wheel_slip_direction};
-const WheelFormulation wheel_guided_sliding = {
-    .states = WHEEL_SLIDING_STATES, .spin_index = OMEGA_3, .tilt_index = THETA, .slip_index = SPEED, .start = start,
-    .derivative = guided_rates, .kinematics = kinematics, .dynamics = guided_forces, .reduce = reduce,
-    .stop_spin = stop_spin, .grip = grip, .slip = wheel_guided_slip, .slip_direction = wheel_guided_slip_direction};
+    .states = WHEEL_SLIDING_STATES,
+    .start = start,
+    .derivative = derivative,
+    .spin_index = OMEGA_3,
+    .tilt_index = THETA,
+    .slip_index = SPEED,
+    .kinematics = kinematics,
+    .dynamics = dynamics,
+    .reduce = reduce,
+    .stop_spin = stop_spin,
+    .grip = grip,
+};

@@ -6,7 +6,7 @@
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
- * Each has a twin, `guided...`, for a wheel on its hub carrier, which keeps the direction of the axle.
+ * Each takes a wheel on its hub carrier too, which keeps the direction of the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -82,6 +82,9 @@ typedef struct WheelScene {
   WheelGround ground;
   WheelContactMode contact;
   double mu_slide; /* >= 0, coefficient of sliding friction: the ground's horizontal force is mu_slide N */
+  /* Not 0: on a hub carrier psi and theta stay, so omega_1 = omega_2 = 0: the limit of infinite moments of inertia
+   * across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
+  int guided;
 } WheelScene;
 
 /* The scene of a wheel under a load (NULL: none) and a law of friction, for example
@@ -152,9 +155,6 @@ typedef struct WheelFormulation {
   void (*stop_spin)(const WheelParameters* wheel, double* y);
   /* The end of the slip: y becomes a state of the form that rolls; null in these. */
   void (*grip)(const WheelParameters* wheel, double* y);
-  /* See wheel_slip. */
-  WheelSlip (*slip)(const WheelScene* scene, const double* reduced, double chi);
-  double (*slip_direction)(const WheelScene* scene, const double* reduced);
 } WheelFormulation;
 
 /* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
@@ -178,19 +178,12 @@ extern const WheelFormulation wheel_sliding;
  * the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
 
-/* On a hub carrier psi and theta stay, so omega_1 = omega_2 = 0: the limit of infinite moments of inertia across the
- * axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
-extern const WheelFormulation wheel_guided, wheel_guided_euler, wheel_guided_multibody;
-extern const WheelFormulation wheel_guided_sliding, wheel_guided_multibody_sliding;
-
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
-WheelSlip wheel_guided_slip(const WheelScene* scene, const double* reduced, double chi);
 
 /* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
  * Of several that nearest to the direction against the force that rolling would need. NaN where there is none: the
  * ground does not press, or the wheel jams. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
-double wheel_guided_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
 double wheel_energy(const WheelParameters* wheel, const WheelKinematics* motion);

@@ -39,11 +39,11 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
 }
 
 double first_direction(const Setup& setup, const WheelScene& scene, const double* reduced) {
-  const double chi = setup.sliding->slip_direction(&scene, reduced);
+  const double chi = wheel_slip_direction(&scene, reduced);
   if (!std::isnan(chi)) return chi;
   WheelScene pulled = scene;
   pulled.ground = WHEEL_GROUND_PULLS;
-  const WheelSlip free = setup.sliding->slip(&pulled, reduced, 0);
+  const WheelSlip free = wheel_slip(&pulled, reduced, 0);
   return wheel_angle_of(free.growth, free.turn);
 }
 

@@ -54,6 +54,7 @@ void let_act(const Setup& setup, const Road& road, double t, const Polynomials& 
   now.scene.wheel.s = road.s;
   if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.wheel.g, road.slope, road.slope_direction);
   now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
+  now.scene.guided = setup.guided;
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }

@@ -19,7 +19,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, now.scene);
   const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
   const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
-  std::fill(y_dot + std::min(formulation.states, states), y_dot + states, 0.0);
+  if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
@@ -67,7 +67,7 @@ double slope_of_turning(void* owner, double t, const double* y) {
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
   setup.sliding->reduce(y, reduced);
-  return -setup.sliding->slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
+  return -wheel_slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {

@@ -48,7 +48,7 @@ double Reading::brake_moment() {
 double Reading::guide_moment(int axis) {
   double moment[2] = {};
   const WheelScene& scene = now_.scene;
-  if (setup().guided) wheel_guide_moment(&scene.wheel, &kinematics(), dynamics().lambda, scene.load.M, moment);
+  if (scene.guided) wheel_guide_moment(&scene.wheel, &kinematics(), dynamics().lambda, scene.load.M, moment);
   return moment[axis];
 }
 

@@ -67,9 +67,14 @@ inline Road road_asked(const Demand& demand) {
 struct InForce {
   Road road = {};
   // Its wheel and mu_slide follow from `road`; its load is that at the origin of the inputs; `ground` follows from
-  // `below`.
-  WheelScene scene = {
-      .wheel = {}, .friction = {}, .load = {}, .ground = WHEEL_GROUND_PRESSES, .contact = WHEEL_GRIPS, .mu_slide = 0};
+  // `below`, `guided` from the setup.
+  WheelScene scene = {.wheel = {},
+                      .friction = {},
+                      .load = {},
+                      .ground = WHEEL_GROUND_PRESSES,
+                      .contact = WHEEL_GRIPS,
+                      .mu_slide = 0,
+                      .guided = 0};
   Inputs inputs;
   Layer layer = Layer::none;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since

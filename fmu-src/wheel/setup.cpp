@@ -121,17 +121,12 @@ bool check_carrier(const Reporter& reporter, const double* v) {
                         Digits{psi_dot, 9}, Digits{theta_dot, 9});
 }
 
-// Those of the kind of run and the formulation, rolling and sliding, free or on a hub carrier.
+// Those of the kind of run and the formulation, rolling and sliding.
 void choose_equations(Setup& setup, const Demand& demand) {
   const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation,
              exchanged = setup.kind == Kind::model_exchange;
-  const auto choose = [&](auto& free, auto& on_carrier) { return setup.guided ? &on_carrier : &free; };
-  setup.formulation = exchanged   ? choose(wheel_euler, wheel_guided_euler)
-                      : multibody ? choose(wheel_multibody, wheel_guided_multibody)
-                                  : choose(wheel_reduced, wheel_guided);
-  if (demand.slides)
-    setup.sliding = multibody ? choose(wheel_multibody_sliding, wheel_guided_multibody_sliding)
-                              : choose(wheel_sliding, wheel_guided_sliding);
+  setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
+  if (demand.slides) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
 }  // namespace

@@ -158,8 +158,8 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 void take_along_motion(Wheel& w, Pass& pass) {
   Present now = present(w);
   Setup setup = w.setup;
-  setup.formulation = setup.guided ? &wheel_guided : &wheel_reduced;
-  if (setup.sliding) setup.sliding = setup.guided ? &wheel_guided_sliding : &wheel_sliding;
+  setup.formulation = &wheel_reduced;
+  if (setup.sliding) setup.sliding = &wheel_sliding;
   double start[WHEEL_MAX_STATES], y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES];
   formulation_of(w.setup, now.scene).reduce(now.y, start);
   for (const int angle : {4, 5})  // a small step must not vanish in the rounding of a large angle
