@@ -23,8 +23,6 @@ class Cvode final : public Engine {
 
  private:
   static void free_objects(CvodeObjects* objects);
-  // cvode_history.cpp
-  bool imitate_step(const Problem& problem, const Step& step);
 
   const Method method_;  // adams or bdf
   std::unique_ptr<CvodeObjects, void (*)(CvodeObjects*)> objects_{nullptr, free_objects};

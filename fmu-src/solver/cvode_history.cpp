@@ -64,42 +64,27 @@ void visit_newton(Archive& archive, CvodeObjects& o, CVodeMemRec& m) {
   for (int i = 0; i < n; ++i) archive.count(dense.pivots[i], i, n - 1);
 }
 
-// A problem that stands still.
-double rest(void* problem, double, const double*, double* y_dot) {
-  std::fill_n(y_dot, static_cast<const Problem*>(problem)->states, 0.0);
-  return 1;
-}
-void equal_weights(void* problem, double, const double*, double* weights) {
-  std::fill_n(weights, static_cast<const Problem*>(problem)->states, 1.0);
+// Ready for numbers that are read: what CVODE does before its first step alone.
+bool set_up_history(CvodeObjects& o, CVodeMemRec& m, double t) {
+  if (CVodeReInit(&m, t, o.y) != CV_SUCCESS) return false;
+  m.cv_e_data = m.cv_user_data;
+  return (!m.cv_linit || m.cv_linit(&m) == CV_SUCCESS) && cvNlsInit(&m) == CV_SUCCESS;
 }
 
 }  // namespace
-
-// Sets CVODE up for numbers that are read: a step of a problem that stands still makes it do what it does only in a
-// first step.
-bool Cvode::imitate_step(const Problem& problem, const Step& step) {
-  Problem still = problem;
-  still.owner = &still;
-  still.derivative = rest;
-  still.weights = equal_weights;
-  Counters uncounted = {};
-  Step imitation;
-  imitation.set_point(step.end, step.y_end, problem.states);
-  return start(still) && advance(still, never, &uncounted, &imitation);
-}
 
 void Cvode::visit(Archive& archive, const Problem& problem, const Step& step) {
   Next next = next_;
   archive.count(next, 0, static_cast<int>(Next::starts_after_stop));
   const bool has_history = step.end > step.start;
   if (archive.reads()) {
-    const bool ready = has_history ? imitate_step(problem, step) : next != Next::goes_on && start(problem);
-    if (!ready) return archive.refuse();
+    if ((!has_history && next == Next::goes_on) || !start(problem)) return archive.refuse();
     next_ = next;
   }
   if (!has_history) return;
   CvodeObjects& o = *objects_;
   auto& m = *static_cast<CVodeMem>(o.cvode);
+  if (archive.reads() && !set_up_history(o, m, step.end)) return archive.refuse();
   visit_steps(archive, m);
   for (int j = 0; j <= m.cv_qmax; ++j) archive.numbers(data(m.cv_zn[j]), o.states);
   if (method_ == Method::bdf) visit_newton(archive, o, m);

@@ -4,9 +4,10 @@
 #include "runge_kutta.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "dormand_prince.hpp"
@@ -14,7 +15,7 @@
 namespace solver {
 namespace {
 
-namespace table = dormand_prince;
+using dormand_prince::a, dormand_prince::d, dormand_prince::e, dormand_prince::stages;
 
 // The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
 constexpr double share_of_tolerance = 0.03;
@@ -27,6 +28,19 @@ constexpr double safety = 0.9;
 // A step that would reach the stop if it were longer by this factor is made longer and ends there. This avoids a tiny
 // step, and adds at most 8 % to the step's error.
 constexpr double stretch = 1.01;
+
+// The stages that enter a row of the table.
+template <const auto& matrix, int row>
+constexpr auto stages_of() {
+  std::array<std::size_t, stages - std::count(matrix[row], matrix[row] + stages, 0.0)> used{};
+  for (std::size_t stage = 0, n = 0; stage < stages; ++stage)
+    if (matrix[row][stage] != 0) used[n++] = stage;
+  return used;
+}
+
+// Of stage i, from the start of the step, in its length.
+template <int i>
+constexpr double time_of = std::accumulate(a[i], a[i] + stages, 0.0);
 
 }  // namespace
 
@@ -52,33 +66,25 @@ struct RungeKutta::Work {
   }
 
   // h sum of row_j f_j.
-  template <const auto& row>
+  template <const auto& matrix, int row>
   void combine(double* sum) const {
-    const auto add = [&]<std::size_t... j>(std::index_sequence<j...>) {
-      for (int i = 0; i < width; ++i) sum[i] = h * ((row[j].weight * engine.f_[row[j].stage][i]) + ...);
+    constexpr auto used = stages_of<matrix, row>();
+    const auto add = [&]<std::size_t... k>(std::index_sequence<k...>) {
+      for (int i = 0; i < width; ++i) sum[i] = h * ((matrix[row][used[k]] * engine.f_[used[k]][i]) + ...);
     };
-    add(std::make_index_sequence<std::size(row)>());
+    add(std::make_index_sequence<used.size()>());
   }
-  template <const auto& row>
+  template <int i>
   void advance(double* y) const {
     double change[width];
-    combine<row>(change);
-    for (int i = 0; i < width; ++i) y[i] = step.y_start[i] + change[i];
+    combine<a, i>(change);
+    for (int k = 0; k < width; ++k) y[k] = step.y_start[k] + change[k];
   }
-
-  template <const auto& row>
-  static constexpr double time_of() {
-    double sum = 0;
-    for (const table::Term& term : row) sum += term.weight;
-    return sum;
-  }
-  template <int i, const auto& row>
+  template <int i>
   bool stage(double* y) {
-    advance<row>(y);
-    return !std::isnan(evaluate(i, step.start + time_of<row>() * h, y));
+    advance<i>(y);
+    return !std::isnan(evaluate(i, step.start + time_of<i> * h, y));
   }
-
-  void end_step() { advance<table::b>(step.y_end); }
 
   // The rate at the end of the step, with which the next one begins.
   bool evaluate_end() {
@@ -89,21 +95,19 @@ struct RungeKutta::Work {
   // Both estimates together, as DOP853 weighs them.
   double error() const {
     double e_3[width], e_5[width];
-    combine<table::e_3>(e_3);
-    combine<table::e_5>(e_5);
+    combine<e, 0>(e_3);
+    combine<e, 1>(e_5);
     const double high = norm(e_5), low = norm(e_3);
     return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
   }
 
   // The error of the step over h in units of the weights; infinite where f is not finite.
   double try_size() {
-    const bool done = stage<1, table::a_1>(at) && stage<2, table::a_2>(at) && stage<3, table::a_3>(at) &&
-                      stage<4, table::a_4>(at) && stage<5, table::a_5>(at) && stage<6, table::a_6>(at) &&
-                      stage<7, table::a_7>(at) && stage<8, table::a_8>(at) && stage<9, table::a_9>(step.y_inside) &&
-                      stage<10, table::a_10>(at) && stage<11, table::a_11>(at);
+    const bool done = stage<1>(at) && stage<2>(at) && stage<3>(at) && stage<4>(at) && stage<5>(at) && stage<6>(at) &&
+                      stage<7>(at) && stage<8>(at) && stage<9>(step.y_inside) && stage<10>(at) && stage<11>(at);
     if (!done) return INFINITY;
-    step.inside_at = time_of<table::a_9>();
-    end_step();
+    step.inside_at = time_of<9>;
+    advance<12>(step.y_end);
     return error();
   }
 
@@ -131,7 +135,7 @@ struct RungeKutta::Work {
 
   // Null, or the reason why no step is accepted.
   const char* make_step(double stop) {
-    if (engine.rates_ == 13)
+    if (engine.has_end_)
       std::copy_n(engine.f_[12], width, engine.f_[0]);
     else
       engine.margin_ = evaluate(0, step.start, step.y_start);
@@ -168,7 +172,7 @@ struct RungeKutta::Work {
       // grow.
       *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
       engine.size_ = h;
-      engine.rates_ = waits ? 12 : 13;
+      engine.has_end_ = !waits;
       return nullptr;
     }
     return step_too_small;
@@ -180,13 +184,13 @@ struct RungeKutta::Work {
   void expand() {
     double p_3[width], p_4[width], p_5[width], p_6[width];
     const double lowest_margin = step.lowest_margin;  // may not depend on what is read
-    const bool finite = (engine.rates_ == 13 || !std::isnan(evaluate(12, step.end, step.y_end))) &&
-                        stage<13, table::a_13>(at) && stage<14, table::a_14>(at) && stage<15, table::a_15>(at);
+    const bool finite = (engine.has_end_ || !std::isnan(evaluate(12, step.end, step.y_end))) &&
+                        stage<13>(at) && stage<14>(at) && stage<15>(at);
     step.lowest_margin = lowest_margin;
-    combine<table::d_3>(p_3);
-    combine<table::d_4>(p_4);
-    combine<table::d_5>(p_5);
-    combine<table::d_6>(p_6);
+    combine<d, 0>(p_3);
+    combine<d, 1>(p_4);
+    combine<d, 2>(p_5);
+    combine<d, 3>(p_6);
     const auto& f = engine.f_;
     auto& c = step.c;
     step.degree = finite ? 7 : 0;
@@ -214,7 +218,7 @@ auto RungeKutta::with_work(const Problem& problem, Counters* counters, Step* ste
 
 bool RungeKutta::start(const Problem&) {
   limit_ = 0;
-  rates_ = 0;
+  has_end_ = false;
   last_error_ = 0;
   return true;
 }
@@ -222,26 +226,26 @@ bool RungeKutta::start(const Problem&) {
 bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
   failure_ = with_work(problem, counters, step, [&](auto work) { return work.make_step(stop); });
   limit_ = 0;
-  if (failure_) rates_ = 0;
   return !failure_;
 }
 
 void RungeKutta::expand(const Problem& problem, Step* step) {
   Counters uncounted = {};  // else the counts would depend on the instants that are read
-  if (rates_ > 0) with_work(problem, &uncounted, step, [](auto work) { work.expand(); });
+  with_work(problem, &uncounted, step, [](auto work) { work.expand(); });
 }
 
 void RungeKutta::visit_sizes(support::Archive& archive) {
   for (double& size : liked_) archive.range(size, 0, archive.greatest);
 }
 
-void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step&) {
+void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step& step) {
   archive.range(limit_, 0, archive.greatest);
   archive.range(size_, 0, archive.greatest);
   archive.range(last_error_, 0, 1);
   archive.number(margin_);
-  archive.count(rates_, 0, 13);
-  for (int k = 0; k < rates_; ++k) archive.numbers(f_[k], problem.states);
+  archive.count(has_end_, 0, 1);
+  const int known = step.end == step.start ? 0 : has_end_ ? 13 : 12;  // stages; the others follow
+  for (int k = 0; k < known; ++k) archive.numbers(f_[k], problem.states);
 }
 
 }  // namespace solver

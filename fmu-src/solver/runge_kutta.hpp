@@ -35,8 +35,8 @@ class RungeKutta final : public Engine {
   double size_ = 0;        // of the last step, s
   double last_error_ = 0;  // of the last step, in units of the weights; 0: there was none
   double margin_ = 0;      // at the end of the last step
-  int rates_ = 0;          // evaluations of the last step: 12; 13 with that at its end; 0: there was none
-  alignas(16) double f_[16][max_states] = {};
+  bool has_end_ = false;   // stage 12, at the end of the last step, is known
+  alignas(16) double f_[16][max_states] = {};  // rates at the stages of the last step
 };
 
 }  // namespace solver

@@ -38,7 +38,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
 
-double first_direction(const Setup& setup, const WheelScene& scene, const double* reduced) {
+double first_direction(const WheelScene& scene, const double* reduced) {
   const double chi = wheel_slip_direction(&scene, reduced);
   if (!std::isnan(chi)) return chi;
   WheelScene pulled = scene;
@@ -55,7 +55,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
     y[setup.sliding->slip_index] = first_slip(setup, t);
-    y[setup.sliding->slip_index + 1] = first_direction(setup, scene, reduced);
+    y[setup.sliding->slip_index + 1] = first_direction(scene, reduced);
   };
   if (may_be_held(setup, now, y)) {
     for (const WheelFriction& law : {WheelFriction{WHEEL_HELD, 0, 0}, {WHEEL_ROLLING, 1, 0}, {WHEEL_ROLLING, -1, 0}}) {

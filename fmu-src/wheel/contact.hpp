@@ -19,7 +19,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
 // The direction in which a slip begins, at a state of the reduced form. Without one the event that ends the run follows
 // at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
-double first_direction(const Setup& setup, const WheelScene& scene, const double* reduced);
+double first_direction(const WheelScene& scene, const double* reduced);
 
 // m/s. A slide begins with the first slip and ends at the least one, below which its direction turns ever faster. Both
 // are small parts of the tolerance, and large enough for the digits of an instant.

@@ -139,7 +139,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   if (turns) setup.sliding->reduce(y, reduced);
   const auto read_at = [&](double x) {
     place = x;
-    if (turns) y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, reduced);
+    if (turns) y[setup.sliding->slip_index + 1] = first_direction(now.scene, reduced);
     reading.set(now);
     return &reading;
   };

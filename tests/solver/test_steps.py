@@ -11,21 +11,21 @@ from support.paths import ROOT
 
 from .solving import FAILED, harmonic
 
-# The table of DOP853 (dormand_prince.hpp) is SciPy's, row by row.
-ROWS = {f"a_{i}": row for i, row in enumerate(DOP853.A)} | {f"a_{i}": row for i, row in enumerate(DOP853.A_EXTRA, 13)}
-ROWS |= {"b": DOP853.B, "e_3": DOP853.E3, "e_5": DOP853.E5} | {f"d_{k}": row for k, row in enumerate(DOP853.D, 3)}
-del ROWS["a_0"]  # the first stage is where the step begins
+# The table of DOP853 (dormand_prince.hpp) is SciPy's, row by row; stage 12 is the end of the step.
+MATRICES = {"a": (*DOP853.A, DOP853.B, *DOP853.A_EXTRA), "e": (DOP853.E3, DOP853.E5), "d": DOP853.D}
+ROWS = {f"{name}[{i}]": row for name, rows in MATRICES.items() for i, row in enumerate(rows) if any(row)}
 
 
 @pytest.fixture(scope="module")
 def table() -> dict[str, np.ndarray]:
-    """Rows by name; stage 12 is the end of the step."""
+    """Rows by name."""
     text = (ROOT / "fmu-src" / "solver" / "dormand_prince.hpp").read_text(encoding="utf-8")
     rows = {}
-    for name, terms in re.findall(r"constexpr Term (\w+)\[\] = \{(.*?)\};", text, re.DOTALL):
-        rows[name] = np.zeros(16)
-        for stage, weight in re.findall(r"\{(\d+), ([^}]+)\}", terms):
-            rows[name][int(stage)] = float(weight)
+    for name, matrix in re.findall(r"constexpr double (\w+)\[\w+\]\[stages\] = \{(.*?)\};", text, re.DOTALL):
+        for i, row in enumerate(re.findall(r"\{([^}]*)\}", f"{matrix}}}")):
+            weights = [float(weight) for weight in row.split(",") if weight]
+            if weights:
+                rows[f"{name}[{i}]"] = np.array(weights + [0.0] * (16 - len(weights)))
     return rows
 
 
