@@ -253,15 +253,8 @@ void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const Instant now = instant_of(*scene, y, slides);
   const Solution solution = solve(now);
   const auto& [x, tau] = solution;
-  *out = {x[X_O],
-          x[Y_O],
-          x[Z_O],
-          x[psi],
-          x[theta],
-          x[phi],
-          spin_rate(now, solution),
-          {x[lambda_1], x[lambda_2], x[lambda_3]},
-          tau};
+  *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_rate(now, solution), {}, tau};
+  std::copy_n(&x[lambda_1], 3, out->lambda);
 }
 
 template <bool slides>

@@ -1,5 +1,4 @@
-/* The law of friction; makes a scene of a wheel, a load and a law, and checks the law; puts a wheel on a slope; turns
- * taken off an angle. */
+/* What acts on a wheel: a load, a law of friction, which is checked, and the slope of the road. */
 #include <math.h>
 
 #include "wheel_equations.h"
@@ -23,23 +22,6 @@ WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, Whee
   if (load) scene.load = *load;
   if (!is_meant(wheel, scene.load.brake, &friction)) scene.friction.kind = WHEEL_NO_LAW;
   return scene;
-}
-
-double wheel_less_turns(double angle) {
-  const double pi = 3.141592653589793;
-  if (fabs(angle) <= pi) return angle;
-  /* The nearest multiple of a rounded 2 pi is off by less than 1e-4 rad; sine and cosine of the whole angle are not. */
-  double rest = remainder(angle, 2 * pi);
-  for (int i = 0; i < 2; ++i) rest += sin(angle) * cos(rest) - cos(angle) * sin(rest);
-  return rest;
-}
-
-double wheel_angle_of(double x, double y) {
-  double size = sqrt(x * x + y * y), angle = x < 0 ? copysign(3.141592653589793, y) : 0;
-  if (size == 0) return 0;
-  /* The rest is less than a quarter turn; each time its sine is taken off. */
-  for (int i = 0; i < 6; ++i) angle += y / size * cos(angle) - x / size * sin(angle);
-  return angle;
 }
 
 void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction) {

@@ -74,7 +74,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
       swing = 0;
     }
     if (outcome == solver::Outcome::event) {
-      T2_ = end_time_ = t;
+      T2_ = t;
       event_ = solver.event();
       return Result::ended;
     }

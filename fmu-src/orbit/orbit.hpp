@@ -22,7 +22,6 @@
 #pragma once
 
 #include <complex>
-#include <limits>
 
 #include "recurrence.hpp"
 #include "solver.hpp"
@@ -54,7 +53,7 @@ class Orbit {
 
   // The state (out, 8 entries) at t >= 0.
   void read(double t, double* y) const;
-  double end_time() const { return end_time_; }  // s; infinite where the motion never ends
+  double end_time() const { return result_ == Result::ended ? T2_ : solver::never; }  // s; infinite where it never ends
   int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
@@ -108,7 +107,6 @@ class Orbit {
   Track track_;  // from the start past T2, in its frame
   Half lead_;    // the motion up to T2: psi, phi and place of the start
   Result result_ = Result::refused;
-  double end_time_ = std::numeric_limits<double>::infinity();
   int event_ = 0;
   solver::Counters counters_ = {};
   double T1_ = 0, T2_ = 0;                           // T2: where the motion ends, if it does

@@ -19,12 +19,9 @@ class Recurrence {
  private:
   static constexpr int most_crossings = 16;
 
-  double begin_of(double period) const { return T1_ + (1 + 2 * period) * half_; }
-
-  double T1_ = 0, half_ = 0;
-  int falls_ = 0, rises_ = 0, later_falls_ = 0;
-  double fall_[most_crossings] = {}, rise_[most_crossings] = {};
-  double later_fall_[2 * most_crossings] = {};  // in one period from T2 on, counted from T2
+  double T2_ = 0, period_ = 0;
+  int falls_ = 0, rises_ = 0, later_falls_ = 0;  // up to T2; later: in the first period from there on, behind the falls
+  double fall_[3 * most_crossings] = {}, rise_[most_crossings] = {};
 };
 
 }  // namespace orbit

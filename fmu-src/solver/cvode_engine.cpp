@@ -148,17 +148,14 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
 }
 
 void Cvode::expand(const Problem& problem, Step* step) {
-  int order = 0;
-  if (CVodeGetLastOrder(objects_->cvode, &order) != CV_SUCCESS) order = 0;
   const double h = step->end - step->start;
   double factor = 1;
-  step->degree = 0;
+  CVodeGetLastOrder(objects_->cvode, &step->degree);
   std::copy_n(step->y_end, problem.states, step->c[0]);
-  for (int k = 1; k <= order; ++k) {
+  for (int k = 1; k <= step->degree; ++k) {
     factor *= h / k;
-    if (CVodeGetDky(objects_->cvode, step->end, k, objects_->y) != CV_SUCCESS) break;
+    CVodeGetDky(objects_->cvode, step->end, k, objects_->y);
     for (int i = 0; i < problem.states; ++i) step->c[k][i] = factor * data(objects_->y)[i];
-    step->degree = k;
   }
 }
 

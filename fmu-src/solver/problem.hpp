@@ -51,7 +51,7 @@ struct Problem {
   double near;          // margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   Settling settling;    // for collocation alone
-  bool passage;      // brief: Runge-Kutta keeps the step size that it wants outside of passages for the time after it
+  bool passage;      // a few short steps between two other problems: Runge-Kutta keeps a step size of its own for them
   double share = 1;  // of the error that a step may otherwise make
 
   // At most max_watched of them.

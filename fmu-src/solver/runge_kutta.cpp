@@ -184,8 +184,8 @@ struct RungeKutta::Work {
   void expand() {
     double p_3[width], p_4[width], p_5[width], p_6[width];
     const double lowest_margin = step.lowest_margin;  // may not depend on what is read
-    const bool finite = (engine.has_end_ || !std::isnan(evaluate(12, step.end, step.y_end))) &&
-                        stage<13>(at) && stage<14>(at) && stage<15>(at);
+    const bool finite = (engine.has_end_ || !std::isnan(evaluate(12, step.end, step.y_end))) && stage<13>(at) &&
+                        stage<14>(at) && stage<15>(at);
     step.lowest_margin = lowest_margin;
     combine<d, 0>(p_3);
     combine<d, 1>(p_4);

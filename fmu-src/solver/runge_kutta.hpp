@@ -30,7 +30,7 @@ class RungeKutta final : public Engine {
   template <class Body>
   auto with_work(const Problem& problem, Counters* counters, Step* step, const Body& body);
 
-  double liked_[2] = {};   // size of the next step, s, outside of passages and inside; 0: none was made
+  double liked_[2] = {};   // size of the next step, s, outside and inside of a passage; 0: none was made
   double limit_ = 0;       // of the first step after the last start, s; 0: none
   double size_ = 0;        // of the last step, s
   double last_error_ = 0;  // of the last step, in units of the weights; 0: there was none

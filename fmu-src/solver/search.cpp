@@ -30,10 +30,7 @@ struct Parabola {
 
 Sample Search::sample(double t) const {
   double y[max_states];
-  if (watched.state < 0)
-    step.read(t, problem.states, y);
-  else
-    y[watched.state] = step.read_state(t, watched.state);
+  watched.state < 0 ? step.read(t, 0, problem.states, y) : step.read(t, watched.state, 1, y);
   return sample(t, y);
 }
 

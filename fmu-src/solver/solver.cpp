@@ -18,7 +18,7 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 }
 
 bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
-  first_stop_ = time_to_look_again(t);
+  first_stop_ = end_of_first_step(t);
   problem_ = problem;
   method_ = method;
   known_until_ = t;
@@ -44,9 +44,9 @@ void Solver::resume() {
   }
 }
 
-// After an event right behind the start of its step, most often another event: the step was too long to see the motion
-// between them, and the next one has to be shorter. Its latest end, s.
-double Solver::time_to_look_again(double t) const {
+// Latest end of the first step after a restart at t, s. An event right behind the start of its step, which most often
+// began at another event, shows that the step was too long for the motion between the two: a thousandth of it is next.
+double Solver::end_of_first_step(double t) const {
   const double length = step_.end - step_.start;
   if (pending_ != Outcome::event || t != known_until_ || !(t - step_.start < 1e-6 * length)) return never;
   return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
@@ -136,7 +136,7 @@ void Solver::read(double t, double* y) const {
   t = std::clamp(t, step_.start, known_until_);
   const double rounding = rounding_at(t);
   if (t > step_.start + rounding && t < step_.end - rounding) expand();
-  step_.read(t, problem_.states, y);
+  step_.read(t, 0, problem_.states, y);
 }
 
 // Fields are written only when they are read; a solver that is saved stays as it is.

@@ -24,24 +24,16 @@ void Step::visit(support::Archive& archive, int states) {
   archive.numbers(y_inside, states);
 }
 
-void Step::read(double t, int states, double* y) const {
-  const double rounding = rounding_at(t);
-  const double s = (t - end) / (end - start);
+void Step::read(double t, int first, int count, double* y) const {
+  const double rounding = rounding_at(t), s = (t - end) / (end - start);
   if (t >= end - rounding)
-    std::copy_n(y_end, states, y);
+    std::copy_n(y_end + first, count, y + first);
   else if (t <= start + rounding)
-    std::copy_n(y_start, states, y);
+    std::copy_n(y_start + first, count, y + first);
+  else if (count == 1)
+    evaluate<1>(c, degree, s, y + first, first);
   else
-    states == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
-}
-
-double Step::read_state(double t, int state) const {
-  const double rounding = rounding_at(t);
-  if (t >= end - rounding) return y_end[state];
-  if (t <= start + rounding) return y_start[state];
-  double y = 0;
-  evaluate<1>(c, degree, (t - end) / (end - start), &y, state);
-  return y;
+    count == 8 ? evaluate<8>(c, degree, s, y) : evaluate<max_states>(c, degree, s, y);
 }
 
 }  // namespace solver

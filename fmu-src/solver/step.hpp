@@ -67,9 +67,9 @@ struct Step {
   // What is saved of the step: all but its polynomial.
   void visit(support::Archive& archive, int states);
 
-  // y at t inside the step; at its ends, up to a few roundings of t, what is kept there: all states, or one alone.
-  void read(double t, int states, double* y) const;
-  double read_state(double t, int state) const;
+  // `count` states from `first` on (out, in their places in y) at t inside the step; at its ends, up to a few roundings
+  // of t, what is kept there. All states, or one alone.
+  void read(double t, int first, int count, double* y) const;
 };
 
 // Keeps what it needs from step to step; the step itself belongs to the solver.

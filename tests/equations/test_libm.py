@@ -1,5 +1,5 @@
 """The compiled-in sine and cosine (cmake/libm): sincos has the bits of both, and both are right to the last digit. They
-are compiled here alone, because the libraries hide them. The equations' own (sines.c) are right to the last digit too.
+are compiled here alone, because the libraries hide them. The equations' own (angles.c) are right to the last digit too.
 
 No part of the paper.
 """
