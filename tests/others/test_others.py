@@ -20,7 +20,7 @@ def test_kanes_method_gives_the_same_accelerations_and_normal_force(symmetric: b
 
 def test_modelicas_wheel_is_as_far_from_ours_as_from_an_independent_integration(library: Library) -> None:
     true, ours = wheels.modelica_reference(), wheels.modelica(library)
-    within(wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, ours), 1e-8, "reference and FMU apart, m")
+    within(wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, ours), 1e-9, "reference and FMU apart, m")
     for other in (true, ours):
         assert wheels.apart(read("modelica_wheel"), other) == pytest.approx(5.84e-4, abs=1e-6)  # m
 
@@ -75,6 +75,6 @@ def test_the_critical_spin_is_that_of_sympys_disc(library: Library) -> None:
 
 @pytest.mark.parametrize("disc", wheels.DISCS, ids=lambda disc: f"m = {disc.m:g}, r_0 = {disc.r_0:g}")
 def test_the_rolling_disc_follows_legendre_functions(library: Library, disc: wheels.Wheel) -> None:
-    within(wheels.legendre_error(library, disc), 1e-12, "omega_2, omega_3: relative")
+    within(wheels.legendre_error(library, disc), 2048 * EPSILON, "omega_2, omega_3: relative")
     judged = replace(disc, J_x=disc.J_x * (1 + 1e-9))
     beyond(wheels.legendre_error(library, disc, judged), 2e-11, "judged by J_x 1e-9 larger: relative")

@@ -63,11 +63,11 @@ def test_the_slip_and_the_time_of_sliding_of_a_locked_wheel_are_the_closed_forms
     grid = {"slip_x_start": [0.0, 4.0, 7.0], "mu_slide": [0.3, 0.4]}
     results = alone(Study(grid=grid, values=locked, measures=measures, stop_time=3.0))
     v, mu = results["slip_x_start"], results["mu_slide"]
-    within(absolute_error(results["slip"], v + 0 * mu), 1e-12, "largest slip, m/s")
+    within(absolute_error(results["slip"], v + 0 * mu), 16 * 7 * EPSILON, "largest slip, m/s")
     within(absolute_error(results["slid"], v / (mu * 9.81)), 0.01, "time of sliding, s")  # one interval
     within(absolute_error(results["mean"], v**2 / (2 * mu * 9.81) / 3), 2e-5, "mean slip, m/s")  # its last interval
     slow = ((v - 2) / (mu * 9.81)).where(v > 2, 0)
-    within(absolute_error(results["slow"], slow), 1e-7, "first passage of 2 m/s, s")
+    within(absolute_error(results["slow"], slow), 16384 * EPSILON, "first passage of 2 m/s, s")
     beyond(absolute_error(results["slid"].sel(mu_slide=0.3), v / (0.31 * 9.81)), 0.05, "time by another friction, s")
 
 
@@ -142,5 +142,5 @@ def test_a_wheel_that_leans_to_the_other_side_is_as_low_as_its_mirror_image(alon
     within(absolute_error(results["low"], angle.min("time")), 16 * EPSILON, "lowest angle, rad")
     within(absolute_error(results["end"], angle[:, -1]), 16 * EPSILON, "angle at the end, rad")
     within(abs(np.diff(results["low"]).item()), 512 * EPSILON, "lowest angles apart, rad")  # after 10 s
-    within(abs(np.diff(results["down"]).item()), 256 * EPSILON, "first passages apart, s")
+    within(abs(np.diff(results["down"]).item()), 64 * EPSILON, "first passages apart, s")
     beyond(absolute_error(*results["theta"]), 0.1, "thetas apart, rad")
