@@ -7,6 +7,7 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
 from support.scenes import AT_REST, KINDS
+from support.sliding import SLIDES
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 H = 2.0**-9  # s, between the points of the difference
@@ -22,12 +23,12 @@ def rates(w: FMU2Wheel) -> np.ndarray:
     return np.array(w.rates(outputs(w))())
 
 
-def forward_difference(w: FMU2Wheel) -> np.ndarray:
+def forward_difference(w: FMU2Wheel, h: float = H) -> np.ndarray:
     """d/dt of all outputs from here on, with the inputs as polynomials that were just set; leaves the instance here."""
     names, blob = outputs(w), w.serialized()
-    rows = [np.frombuffer((w.back(blob).by(k * H) if k else w).read(names)) for k in range(len(FORWARD))]
+    rows = [np.frombuffer((w.back(blob).by(k * h) if k else w).read(names)) for k in range(len(FORWARD))]
     w.back(blob)
-    return FORWARD @ rows / H
+    return FORWARD @ rows / h
 
 
 def push(w: FMU2Wheel, slope: float) -> None:
@@ -49,6 +50,22 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
         push(w, 5.001)  # the partner: another slope of the inputs is seen in the reactions
         beyond(np.max(np.abs(rates(w) - difference) / (1 + np.abs(exact))), 2e-7, "rate under another slope, relative")
         w.back(blob)
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("name", ["thrown", "turns at once"])
+def test_output_derivatives_follow_a_slip_that_turns_ever_faster_as_it_ends(wheel, name, formulation):
+    """Up to 5e-6 m/s, where it turns by up to 70 rad/s."""
+    start = {"tolerance": 1e-13, "formulation": formulation, **SLIDES[name].start}
+    logged = wheel(logging=True).start(**start).to(0.3).sentences
+    end = next(float(text.split()[2]) for text in logged if "stops sliding" in text or "another direction" in text)
+    for ahead in (1e-3, 1e-4, 1e-5, 1e-6):
+        w = wheel().start(**start).to(end - ahead)
+        assert w.get("contact_mode") == [1]
+        exact, difference = rates(w), forward_difference(w, ahead / 50)
+        errors = np.abs(exact - difference) / (1 + np.abs(exact))
+        within(dict(zip(outputs(w), errors, strict=True)), 1e-5, "error")
+        beyond(np.max(np.abs(rates(w.by(ahead / 50)) - exact) / (1 + np.abs(exact))), 1e-4, "change within a fiftieth")
 
 
 def jacobian(w: FMU2Wheel) -> np.ndarray:
@@ -265,6 +282,39 @@ def test_a_brake_about_to_be_put_on_has_the_derivative_of_its_capacity(wheel):
         w = wheel().start(theta_start=np.pi / 2, phi_dot_start=-5.0, s=s).to(0.01)
         within(abs(w.jacobian(["tau_brake"], ["M_brake"])[0, 0] - 1), 64 * EPSILON, "derivative by the brake, off 1")
         assert w.get("tau_brake") == [0]
+
+
+PULLED = {"theta_start": 1.3, "psi_dot_start": 0.4, "keep_contact": True, "s": 0.02}
+STATE = {"rolls": {"phi_dot_start": -5.0, "psi_dot_start": 0.4}, "held": {"phi_dot_start": 0.0, "psi_dot_start": 0.0}}
+STATE |= {"regularized": {**STATE["rolls"], "friction_law": 2, "omega_s": 2.0}}
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("state", STATE)
+def test_on_a_ground_that_pulls_the_brake_alone_has_the_moment_and_its_derivatives(wheel, state, formulation):
+    """F_Z lifts the wheel; the partner is the ground that presses, with s N beside the brake."""
+    own = {**PULLED, **STATE[state], "formulation": formulation, "tolerance": 1e-12}
+    load = {"M_brake": (50.0, 30.0), "M_3": (-4.0, 6.0), "M_1": (0.5, -2.0)}
+    for F_Z, pulls in ((300.0, True), (30.0, False)):
+        w = wheel().start(**own).give({**load, "F_Z": (F_Z, 20.0)}).by(1e-3).give({**load, "F_Z": (F_Z, 20.0)})
+        assert (w.get("lambda_3")[0] < 0) == pulls and w.get("friction_mode") == [0 if state == "held" else -1]
+        tau, braked = w.get("tau", "tau_brake")
+        assert (tau == braked) == pulls
+        exact, difference = rates(w), forward_difference(w)
+        errors = np.abs(exact - difference) / (1 + np.abs(exact))
+        within(dict(zip(outputs(w), errors, strict=True)), 2e-7, "rate")
+        knowns = ("M_brake", *INPUTS)
+        found = w.jacobian(outputs(w), knowns)
+        for name, column in zip(knowns, found.T, strict=True):
+            (value,) = w.get(name)
+            high, low = (np.frombuffer(w.put(**{name: value + d}).read(outputs(w))) for d in (0.01, -0.01))
+            w.put(**{name: value})
+            errors = np.abs((high - low) / 0.02 - column)
+            within(dict(zip(outputs(w), errors, strict=True)), 1e-9, f"derivative by {name}")
+        slope = w.jacobian(["tau_brake"], ["M_brake"])[0, 0]
+        within(
+            abs(slope - (0.0 if state == "held" else braked / 50.0)) if pulls else 0.0, 1e-12, "derivative of tau_brake"
+        )
 
 
 UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0}

@@ -210,15 +210,16 @@ class Paper:
     def solve_held(self, load: np.ndarray | None = None) -> np.ndarray:
         """q_ddot, lambda and tau: (24) bordered by omega_z_dot = 0 and the axle moment tau."""
         K, right = self.system(0, load)
-        bordered = np.zeros((*K.shape[:-2], 10, 10), K.dtype)
-        bordered[..., :9, :9] = K
-        bordered[..., 5, 9] = -self.wheel["J_z"]  # the unknown is tau / J_z: all columns of one size
-        bordered[..., 9, 3:6] = self.Q[..., 2, :]
+        n = K.shape[-1]
+        bordered = np.zeros((*K.shape[:-2], n + 1, n + 1), K.dtype)
+        bordered[..., :n, :n] = K
+        bordered[..., 5, n] = -self.wheel["J_z"]  # the unknown is tau / J_z: all columns of one size
+        bordered[..., n, 3:6] = self.Q[..., 2, :]
         drift = (self.Q_dot[..., 2, :] * self.beta_dot).sum(-1)
         right = np.concatenate([right, -drift[..., None]], axis=-1)
         size = np.abs(bordered).max(axis=-1, keepdims=True)  # and all rows: rounding stays small
         x = np.linalg.solve(bordered / size, right[..., None] / size)[..., 0]
-        return np.concatenate([x[..., :9], (self.wheel["J_z"] * x[..., 9])[..., None]], axis=-1)
+        return np.concatenate([x[..., :n], (self.wheel["J_z"] * x[..., n])[..., None]], axis=-1)
 
     @cached_property
     def slip(self) -> np.ndarray:
@@ -286,6 +287,26 @@ class Stabilised(Paper):
         K, right = super().system(kappa, load)
         right[..., 6:] -= self.decay_rate[..., None] * self.slip
         return K, right
+
+
+class Carried(Paper):
+    """(24) of a wheel on its hub carrier, whose moments about e1 and e2 keep psi_dot and theta_dot: two unknowns more.
+    `slip`: one that slides, with coefficient and direction from X: its force stands in the place of two constraints."""
+
+    slip_of: tuple[np.ndarray, np.ndarray] | None = None
+
+    def system(self, kappa: np.ndarray | float, load: np.ndarray | None = None) -> tuple:
+        K, right = super().system(kappa, load)
+        if self.slip_of:
+            mu, chi = self.slip_of
+            K[..., 6:8, :], right[..., 6:8] = 0, 0
+            K[..., 6, 6] = K[..., 7, 7] = 1
+            K[..., 6, 8], K[..., 7, 8] = mu * np.cos(chi), mu * np.sin(chi)
+        bordered = np.zeros((*K.shape[:-2], 11, 11), K.dtype)
+        bordered[..., :9, :9] = K
+        bordered[..., 3:6, 9:] = -transposed(self.phi_matrix)[..., :2]  # e1 and e2 in body axes
+        bordered[..., 9, PSI] = bordered[..., 10, THETA] = 1
+        return bordered, np.concatenate([right, np.zeros_like(right[..., :2])], axis=-1)
 
 
 def solved(paper: Paper, scenes: np.ndarray, load: Mapping | None = None) -> np.ndarray:

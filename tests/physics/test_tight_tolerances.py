@@ -162,3 +162,19 @@ def test_the_multibody_form_slides_and_falls_flat_as_the_reduced_one_in_hardly_m
     beyond(len(ends), 4, "wheels that fall flat")
     within(max(ends), 3e-6, "largest distance of the instants at which they lie flat, s")
     within(float(np.median(ends)), 3e-8, "middle distance of those instants, s")
+
+
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-12, 1e-13])
+@pytest.mark.parametrize(("theta", "psi_dot"), [(0.05, 0.1), (0.5, 1e-4)])
+def test_the_multibody_form_rolls_past_flat_in_some_thousand_steps(library: Library, theta, psi_dot, tolerance) -> None:
+    """Tight steps are lost in the rounding of accelerations in which psi_dot^2 cancels."""
+    start = {"theta_start": theta, "psi_dot_start": psi_dot, "phi_dot_start": 0.0, "keep_contact": True}
+    exact = library.simulate([0.0, 1.0], 1e-13, **start, formulation=2)
+
+    def error(**other: float) -> float:
+        run = library.simulate([0.0, 1.0], tolerance, **{**start, **other}, formulation=3)
+        within(run.counters["n_steps"], 5e3, "steps")
+        return max(abs(float(run[name][-1] - exact[name][-1])) for name in ("X_O", "theta", "psi", "phi_dot"))
+
+    within(error(), 5e-8, "difference of the forms")
+    beyond(error(theta_start=theta + 1e-6), 5e-8, "difference with another tilt")

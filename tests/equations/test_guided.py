@@ -1,0 +1,93 @@
+"""The equations on a hub carrier against the paper's system (24) with the carrier's two moments as unknowns.
+
+Random wheels whose axle keeps its direction, under loads and each law; frames of wheel_equations.h.
+"""
+
+from ctypes import byref, c_double
+
+import numpy as np
+import pytest
+from equations.paper_transcription import Carried, omega_z_dot, papers_state, solved
+from equations.pointwise import ACCELERATIONS, Table, draw
+from support import equations as eq
+from support.bounds import beyond, within
+
+FORMS, SLIDES = (eq.REDUCED, eq.EULER, eq.MULTIBODY), (eq.SLIDING, eq.MULTIBODY_SLIDING)
+BOUND = 1e-10
+
+
+def guided(seed: int, law: int, rows: int = 3000) -> tuple[Table, Table]:
+    """Scenes and motions."""
+    scenes, motions = draw(seed, law, symmetric=False, rows=rows)
+    motions["psi_dot"] = motions["theta_dot"] = 0
+    if law == eq.HELD:
+        motions["phi_dot"] = 0
+    random = np.random.default_rng(seed)
+    scenes["mu_slide"], scenes["contact"] = random.uniform(0, 1.2, rows), 1
+    scenes["guided"] = 1
+    for axis in ("slip_x", "slip_y"):
+        motions[axis] = random.normal(size=rows)
+    return scenes, motions
+
+
+def transcribed(scenes: Table, motions: Table, slides: bool) -> tuple[Table, Table]:
+    """WheelDynamics, and the carrier's moments about e1 and e2."""
+    q = papers_state(eq.start_each(eq.MULTIBODY, scenes, motions))
+    paper = Carried(scenes["wheel"], q)
+    if slides:
+        N = scenes["wheel"]["m"] * scenes["wheel"]["g"] - scenes["load"]["F"][:, 2]
+        mu = np.where(N > 0, scenes["mu_slide"], 0)
+        paper.slip_of = mu, motions["psi"] + np.arctan2(motions["slip_y"], motions["slip_x"])
+    x = solved(paper, scenes)
+    out = eq.table(eq.Dynamics, len(x))
+    for i, name in enumerate(ACCELERATIONS):
+        out[name] = x[:, i]
+    out["lambda_"], out["tau"] = x[:, 6:9], x[:, 11]
+    out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
+    return out, x[:, 9:11]
+
+
+def apart(found: Table, want: Table, scenes: Table) -> float:
+    """Largest error over the rows, as a force over those that act: of a wheel that is held all else is zero."""
+    wheel, load = scenes["wheel"], scenes["load"]
+    size = wheel["m"] * 9.81 + np.abs(load["F"]).max(axis=1) + np.abs(load["M"]).max(axis=1) / wheel["r_0"]
+    as_force = dict.fromkeys(ACCELERATIONS[:3], wheel["m"])
+    as_force |= dict.fromkeys(("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), wheel["J_z"] / wheel["r_0"])
+    as_force |= {"lambda_": np.ones_like(size), "tau": 1 / wheel["r_0"]}
+    errors = [np.abs(found[name] - want[name]).T * factor for name, factor in as_force.items()]
+    return max(float((error / size).max()) for error in errors)
+
+
+def moments(scenes: Table, k: Table, found: Table) -> Table:
+    """wheel_guide_moment row by row."""
+    out = np.zeros((len(k), 2))
+    for row, scene, motion, forces in zip(out, scenes, k, found["lambda_"], strict=True):
+        record, place = eq.Parameters.from_buffer_copy(scene["wheel"]), eq.Kinematics.from_buffer_copy(motion)
+        force, moment = ((c_double * 3)(*values) for values in (forces, scene["load"]["M"]))
+        eq.LIBRARY.wheel_guide_moment(byref(record), byref(place), force, moment, row.ctypes.data_as(eq.DOUBLES))
+    return out
+
+
+@pytest.mark.parametrize("slides", [False, True], ids=["grips", "slides"])
+def test_accelerations_reactions_and_the_carriers_moments_are_those_of_24(law: int, slides: bool) -> None:
+    scenes, motions = guided(12, law)
+    want, carried = transcribed(scenes, motions, slides)
+    pulls = want["lambda_"][:, 2] <= 0
+    within(abs(pulls.mean() - 0.2), 0.1, "share of wheels that the ground pulls, less 0.2")
+    arm = scenes["wheel"]["r_0"] * (np.abs(want["lambda_"]).max(axis=1) + scenes["wheel"]["m"] * 9.81)
+    for form in SLIDES if slides else FORMS:
+        y = eq.start_each(form, scenes, motions)
+        found = eq.dynamics_each(form, scenes, y)
+        within(apart(found, want, scenes), BOUND, "distance")
+        held = moments(scenes, eq.kinematics_each(form, scenes, y), found)
+        within(float((np.abs(held - carried).max(axis=1) / arm).max()), BOUND, "moment over r_0 times the force")
+        y_dot, normal = eq.derivative_each(form, scenes, y)
+        answer = found.copy()
+        answer["lambda_"][:, 2], answer["omega_z_dot"] = normal, y_dot[:, form.spin_index]
+        within(apart(answer, want, scenes), BOUND, "derivative")
+        wrong = scenes.copy()
+        wrong["wheel"]["J_z"] *= 1 + 1e-7
+        wrong["mu_slide"] *= 1 + 1e-7
+        other = apart(eq.dynamics_each(form, wrong, y), want, scenes)
+        if law != eq.HELD or slides:
+            beyond(other, 1e-9, "distance with another inertia and coefficient")
