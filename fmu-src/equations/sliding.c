@@ -141,18 +141,15 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
-  double found = NAN, least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
+  double least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
   for (int i = 0; i < parts; ++i) { /* from `against` to both sides in turn */
     double lo = against + part * ((i % 2 ? -(i + 1) / 2 : i / 2) - 0.5), hi = lo + part;
-    int nearest = i / 2 - 1;
-    if (part * nearest > fabs(found - against)) break; /* the others are farther away */
-    if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue;
+    if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue; /* settling > 0 */
     double chi = zero_of_turning(w, &b, lo, hi);
     WheelSlip slip = slip_of(w, &b, chi);
-    int admissible = slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0 && slip.settling > 0;
-    if (admissible && !(cos(chi - against) <= cos(found - against))) found = chi;
+    if (slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0) return chi;
   }
-  return found;
+  return NAN;
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {

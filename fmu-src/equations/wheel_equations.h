@@ -181,8 +181,8 @@ extern const WheelFormulation wheel_multibody_sliding;
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
 
 /* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
- * Of several that nearest to the direction against the force that rolling would need. NaN where there is none: the
- * ground does not press, or the wheel jams. */
+ * Of several that nearest, to two degrees, to the direction against the force that rolling would need. NaN where there
+ * is none: the ground does not press, or the wheel jams. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */

@@ -54,7 +54,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
-    y[setup.sliding->slip_index] = first_slip(setup, t);
+    y[setup.sliding->slip_index] = 2 * least_slip(setup, t);
     y[setup.sliding->slip_index + 1] = first_direction(scene, reduced);
   };
   if (may_be_held(setup, now, y)) {
@@ -72,8 +72,6 @@ double least_slip(const Setup& setup, double t) {
   constexpr double part = 0.01, roundings = 128;
   return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
 }
-
-double first_slip(const Setup& setup, double t) { return 2 * least_slip(setup, t); }
 
 // Rounding is relative to mu_max N, and that of a tangential force of zero.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {

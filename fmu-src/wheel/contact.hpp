@@ -21,10 +21,9 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 // at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
 double first_direction(const WheelScene& scene, const double* reduced);
 
-// m/s. A slide begins with the first slip and ends at the least one, below which its direction turns ever faster. Both
-// are small parts of the tolerance, and large enough for the digits of an instant.
+// m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as much:
+// small parts of the tolerance, and large enough for the digits of an instant.
 double least_slip(const Setup& setup, double t);
-double first_slip(const Setup& setup, double t);
 
 // Whether the road limits the force of rolling: mu_max = 0 is no limit, and of a wheel that can slide no friction.
 inline bool is_limited(const Setup& setup, const Road& road) { return setup.sliding || road.mu_max > 0; }

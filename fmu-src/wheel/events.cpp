@@ -67,10 +67,7 @@ int spin_alone(const Setup& setup, const InForce& now) {
 Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
-  if (now.slides() && y[setup.sliding->slip_index] <= first_slip(setup, t))
-    decide_contact(setup, t, y, now);  // a slip that begins has the direction of the new law
-  else
-    decide_law(setup, t, y, now, law == WHEEL_HELD);
+  decide_law(setup, t, y, now, law == WHEEL_HELD);
   return Consequence::bends;
 }
 
