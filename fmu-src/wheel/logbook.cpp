@@ -75,6 +75,14 @@ void warn_of_grip(Wheel& wheel, double t, const double* y) {
                        instant_of(setup, t), Digits{mu, 3});
 }
 
+void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y) {
+  InForce now = wheel.run.in_force;
+  now.scene = ahead;
+  if (now.slides() && margin_of(row_of(Event::jams), wheel.setup, now, wheel.run.t, y) < 0)
+    wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", instant_of(wheel.setup, wheel.run.t),
+                       ending_of(now, Event::jams).text);
+}
+
 void log_ending(Wheel& wheel, Event event) {
   const Run& run = wheel.run;
   const Setup& setup = wheel.setup;

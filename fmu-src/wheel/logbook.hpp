@@ -24,6 +24,10 @@ void log_contact(Wheel& wheel, bool slid, bool goes_on);
 // times in the wheel's own time, so that it costs nothing noticeable. Writes run.grip_due.
 void warn_of_grip(Wheel& wheel, double t, const double* y);
 
+// Where a road that was set, with the scene and y of a reading, makes the wheel jam: the reading has no force that
+// satisfies the equations, and the next step ends the run.
+void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y);
+
 // Of an ending; of very many, as of a search that goes back and tries again, the first ones alone. Writes endings.
 void log_ending(Wheel& wheel, Event event);
 

@@ -130,7 +130,10 @@ void close(Wheel& w) {
 }
 
 Reading& reading_of(Wheel& w) {
-  if (!w.reading.is_set()) w.reading.set(present(w));
+  if (w.reading.is_set()) return w.reading;
+  const Present now = present(w);
+  w.reading.set(now);
+  if (w.demand.changed) warn_of_jam(w, now.scene, now.y);
   return w.reading;
 }
 

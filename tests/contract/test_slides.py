@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import DISCARD, ERROR, OK, FMU2Wheel
+from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 from support.sliding import HUB, ROAD, UPRIGHT
 
 WEIGHT, g = 20 * 9.81, 9.81
@@ -56,6 +56,19 @@ def test_every_message_of_a_slide_has_the_callers_time_and_its_own_number(wheel,
     text = jammed.sentences[-1]
     assert "jam" in text and "mu_slide = 0.8 at" in text
     assert start < float(text.split(" t = ")[1].split()[0]) < start + 0.2
+
+
+def test_a_road_on_which_the_wheel_would_jam_is_warned_of_where_its_forces_are_read_and_ends_the_run(wheel) -> None:
+    """The paper's wheel at 59 degrees jams above 1.451."""
+    leaning = {"theta_start": 1.03, "slip_y_start": -5.0, "phi_dot_start": 0.0, "mu_max": 0.5, "mu_slide": 0.4}
+    w = wheel().start(start=7.0, **leaning).to(7.01).put(mu_max=9.0, mu_slide=1.0)
+    beyond(w.get("lambda_3")[0], 0, "normal force on a road that holds it, N")
+    assert w.texts() == []
+    beyond(0, w.put(mu_slide=8.0).get("lambda_3")[0], "nothing over the normal force on one that does not, N")
+    text = "the wheel jams (Painleve's paradox) with mu_slide = 8"
+    assert w.take_messages() == [(WARNING, "logStatusWarning", f"t = 7.01 s: {text}.")]
+    assert w.step(0.01) == DISCARD and w.said().startswith(f"{text} at t = 7.01 s".replace("the", "The", 1))
+    assert w.get("lambda_3") and w.texts() == []
 
 
 def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outputs(wheel) -> None:
