@@ -64,6 +64,21 @@ def test_a_slip_that_falls_while_it_turns_ends(library: Library, tolerance: floa
     assert len(ends) == 1
 
 
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-13])
+def test_the_slips_of_a_light_body_that_fall_at_many_g_end(library: Library, tolerance: float) -> None:
+    """A slip ends sooner where the rounding of the instant counts for more."""
+    body = {"J_x": 1.17e-3, "J_y": 1.16e-3, "J_z": 7.4e-4, "s": 0.02, "mu_max": 0.111, "mu_slide": 0.1}
+    start = {"theta_start": 1.11, "phi_start": 2.03, "theta_dot_start": -0.074, "phi_dot_start": 1.93}
+
+    def lean(tolerance: float, psi_dot: float = -0.565) -> float:
+        run = library.simulate([0.0, 0.6], tolerance, **body, **start, psi_dot_start=psi_dot)
+        beyond(sum("direction" in message for message in run.messages), 10, "slips")
+        return float(run["theta"][-1])
+
+    within(abs(lean(tolerance) - lean(1e-10)), 1e-10, "lean, rad")
+    beyond(abs(lean(tolerance, -0.566) - lean(1e-10)), 1e-8, "lean after another start, rad")
+
+
 @pytest.mark.parametrize("formulation", [2, 3])
 def test_slips_of_random_wheels_end_at_the_tightest_tolerances(library: Library, formulation: int) -> None:
     """3 s under loads that go on."""
