@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, BrowserContext, Page
 from support.paths import ROOT
 
 from page.browser import chromium
-from page.tests.pages import FLAGS, RECORD, REST, opened, view, window_of, write_csv
+from page.tests.pages import FLAGS, RECORD, REST, SIZE, opened, view, window_of, write_csv
 
 
 @pytest.fixture(scope="session")
@@ -54,7 +54,7 @@ def live_file() -> Path:
 
 @pytest.fixture(scope="session")
 def window(browser) -> BrowserContext:
-    return window_of(browser, viewport={"width": 900, "height": 640})
+    return window_of(browser, viewport=SIZE)
 
 
 @pytest.fixture(scope="session")

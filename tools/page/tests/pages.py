@@ -13,6 +13,7 @@ from page.browser import show, surroundings
 
 POSE = (*bodies.POSE, "Z_O")
 RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)
+SIZE = {"width": 900, "height": 640}  # of the window, CSS pixels
 # The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
 FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.

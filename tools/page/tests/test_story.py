@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from page.tests.pages import column
+from page.tests.pages import SIZE, column
 
 STEPS = 10
 UPRIGHT = np.pi / 2
@@ -115,11 +115,28 @@ def test_thrown_with_backspin_it_slides_grips_and_comes_back(live, story):
     t = (forward + 0.35 * spin) / growth
     assert (grips, back) == (pytest.approx(t, abs=0.05), pytest.approx(0.3 * 9.81 * t - forward, abs=0.005))
     assert "fell" not in str(live.evaluate("page.wheels[0].ended"))
-    for at, length in ((0.4, (5.5 - growth * 0.4) / 5.5), (1.0, 0.0)):
+    for at, length in ((0.0, 1.0), (0.4, (5.5 - growth * 0.4) / 5.5), (1.0, 0.0)):
         live.evaluate("(t) => { page.player.seek(t); page.live.frame(); page.draw(); }", at)
         drawn = live.evaluate(SLIP)
         assert drawn == pytest.approx([0, 1.1 * 0.35 * length], abs=2e-3)  # e1 points along Y
         assert live.locator("#grip-now").get_attribute("data-state") == ("slides" if length else "rolls")
+
+
+def test_what_it_does_now_can_be_read_beside_every_step_on_a_small_screen(live, story):
+    """Also while it slides; partner: a lower window."""
+    shown = "() => [...document.querySelectorAll('#critical, #grip-now')].map((p) => p.getBoundingClientRect().bottom)"
+    for height in (800, 560):
+        live.set_viewport_size({"width": 1280, "height": height})
+        below = []
+        for k in range(1, STEPS + 1):
+            story(k)
+            live.evaluate("page.live.frame()")
+            below.append(
+                max(live.evaluate(shown))
+                - live.evaluate("document.querySelector('#live').getBoundingClientRect().bottom")
+            )
+        assert (max(below) < 0) is (height == 800), below
+    live.set_viewport_size(SIZE)
 
 
 SLIP = """() => {
