@@ -43,7 +43,7 @@ function countBetween(table, k) {
   return count[k + 1] - count[k] - Number(slidesAt(table, k) !== slidesAt(table, k + 1));
 }
 
-/** Whether the wheel slides: its slip is exactly zero while it grips. */
+/** Whether the wheel slides: its slip is exactly zero while it rolls. */
 function slidesAt({columns: {slip_x: along, slip_y: across}}, row) { return Boolean(along?.[row] || across?.[row]); }
 
 /** [[begin, end], ...] in s in which it slides, true to half a row. */
