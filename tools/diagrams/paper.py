@@ -108,7 +108,7 @@ def start_of(scene: Scene) -> str:
     turned = [rf"${symbol} = {np.degrees(scene.value(f'{name}_start')):.5g}°$" for name, symbol in angles]
     rates = [rf"$\dot{symbol} = {scene.value(f'{name}_dot_start'):.4g}$" for name, symbol in angles]
     place = [rf"${axis}_O = {scene.value(f'{axis}_O_start'):.4g}$" for axis in "XY"]
-    return f"At $t = 0$: {', '.join(turned)}; {', '.join(rates)} rad/s; {', '.join(place)} m"
+    return f"At $t = 0$: {', '.join(turned)}; {', '.join(rates)}{NO_BREAK}rad/s; {', '.join(place)}{NO_BREAK}m"
 
 
 def title_of(scene: Scene) -> str:
