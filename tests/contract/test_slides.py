@@ -71,6 +71,20 @@ def test_a_road_on_which_the_wheel_would_jam_is_warned_of_where_its_forces_are_r
     assert w.get("lambda_3") and w.texts() == []
 
 
+def test_the_forces_read_where_a_slide_begins_under_a_brake_are_those_that_follow(wheel) -> None:
+    """The brake alone decides whether the spin is held, and with it the direction in which the slip begins."""
+    pushed = {**UPRIGHT, "mu_max": 0.2, "mu_slide": 0.18, "F_X": 60.0, "F_Y": 70.0, "M_3": -9.0}
+    names, modes = ("lambda_x", "lambda_y", "tau"), set()
+    for brake in np.linspace(1, 80, 40):
+        w = wheel().initializing(**pushed, M_brake=float(brake))
+        before = w.get(*names)
+        assert w.exitInitializationMode() == OK
+        within(absolute_error(w.by(1e-6).get(*names), before), 1e-6, "forces, N, and moment, N m, apart")
+        modes.add(tuple(w.get("contact_mode", "friction_mode")))
+        w.close()
+    assert modes == {(0, -1), (1, -1), (1, 0)}
+
+
 def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outputs(wheel) -> None:
     w = wheel().start(**THROWN, M_brake=5.0).to(0.1)
     assert w.get("contact_mode") == [1]
