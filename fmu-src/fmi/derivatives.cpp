@@ -2,38 +2,34 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exchange.hpp"
 #include "instance.hpp"
-#include "slopes.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
 
-constexpr const char* misfit = "%s: value reference %u is not %s.";
+bool is_input(fmi2ValueReference v) { return v >= wheel::first_input && v < wheel::stored_count; }
 
-bool check_input(const Instance& i, fmi2ValueReference variable) {
-  return i.check(variable >= wheel::first_input && variable < wheel::stored_count, misfit, variable, "an input");
-}
-
-bool check_output(const Instance& i, fmi2ValueReference variable) {
-  const bool output = wheel::is_variable(variable, wheel::Type::real) && wheel::row_of(variable).role == Role::output;
-  return i.check(output, misfit, variable, "a real output");
+bool is_real_output(fmi2ValueReference v) {
+  return wheel::is_variable(v, wheel::Type::real) && wheel::row_of(v).role == Role::output;
 }
 
 // Of a directional derivative.
-bool check_unknown(const Instance& i, fmi2ValueReference variable) {
-  const bool computed = variable >= wheel::stored_count && wheel::is_variable(variable, wheel::Type::real);
-  return i.check(computed, misfit, variable, "a calculated real variable");
-}
+bool is_unknown(fmi2ValueReference v) { return v >= wheel::stored_count && wheel::is_variable(v, wheel::Type::real); }
 
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
 // depend on the parameters.
-bool check_known(const Instance& i, fmi2ValueReference variable) {
-  const bool exchanged = i.wheel.kind() == wheel::Kind::model_exchange, begun = has_begun(i.wheel.phase());
-  if (begun ? exchanged && wheel::state_index_of(variable) >= 0 : variable < wheel::stored_count) return true;
-  return check_input(i, variable);
+bool is_known(const Instance& i, fmi2ValueReference v) {
+  const bool exchanged = i.wheel.demand.kind == wheel::Kind::model_exchange, begun = has_begun(i.wheel.run.phase);
+  return is_input(v) || (begun ? exchanged && wheel::state_index_of(v) >= 0 : v < wheel::stored_count);
+}
+
+template <class Fits>
+bool check_all(const Instance& i, const fmi2ValueReference v[], std::size_t n, Fits fits, const char* what) {
+  return std::all_of(v, v + n, [&](fmi2ValueReference own) {
+    return i.check(fits(own), "%s: value reference %u is not %s.", own, what);
+  });
 }
 
 }  // namespace
@@ -44,12 +40,11 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
                                        const fmi2Integer orders[], const fmi2Real values[]) {
   return guarded(c, legality::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!check_input(i, v[k])) return fmi2Error;
+    if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
+    for (std::size_t k = 0; k < n; ++k)
       if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]))
         return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
                      orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
-    }
     for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, v[k], values[k], orders[k]);
     return fmi2OK;
   });
@@ -59,9 +54,9 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2Integer orders[], fmi2Real values[]) {
   return guarded(c, legality::get_output_derivatives, "fmi2GetRealOutputDerivatives", [=](Instance& i) {
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
+    if (!check_all(i, v, n, is_real_output, "a real output")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
-      if (!check_output(i, v[k]) ||
-          !i.check(orders[k] == 1, "%s: order %d of %s: only the first derivative is provided.", orders[k],
+      if (!i.check(orders[k] == 1, "%s: order %d of %s: only the first derivative is provided.", orders[k],
                    wheel::row_of(v[k]).name))
         return fmi2Error;
     const fmi2Status status = i.prepare_reading(v, n);
@@ -75,10 +70,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         fmi2Real values[]) {
   return guarded(c, legality::get_values, "fmi2GetDirectionalDerivative", [=](Instance& i) {
     if (!i.check_arrays(n_unknowns, unknowns, values) || !i.check_arrays(n_knowns, knowns, seeds)) return fmi2Error;
-    for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!check_known(i, knowns[k])) return fmi2Error;
-    for (std::size_t u = 0; u < n_unknowns; ++u)
-      if (!check_unknown(i, unknowns[u])) return fmi2Error;
+    const auto known = [&](fmi2ValueReference v) { return is_known(i, v); };
+    if (!check_all(i, knowns, n_knowns, known, "an input")) return fmi2Error;
+    if (!check_all(i, unknowns, n_unknowns, is_unknown, "a calculated real variable")) return fmi2Error;
     std::fill_n(values, n_unknowns, 0.0);
     if (!n_unknowns || !n_knowns) return fmi2OK;
     if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;

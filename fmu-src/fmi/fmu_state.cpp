@@ -5,7 +5,6 @@
 #include <new>
 
 #include "instance.hpp"
-#include "snapshot.hpp"
 
 using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault;
 namespace legality = fmi::legality;
@@ -91,7 +90,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
     if (!state || !bytes) return null_pointer;
-    const char* fault = wheel::fault_of(i.wheel.kind(), reinterpret_cast<const unsigned char*>(bytes), size);
+    const char* fault = wheel::fault_of(i.wheel.demand.kind, reinterpret_cast<const unsigned char*>(bytes), size);
     Snapshot* snapshot = fault ? nullptr : allocate(state, size);
     if (!snapshot) return fault ? fault : no_memory;
     std::memcpy(snapshot->bytes(), bytes, size);

@@ -1,6 +1,5 @@
 // Instances: creation, logging, the checks that many functions share.
 #include "instance.hpp"
-#include "logbook.hpp"
 
 #include <cstdlib>
 #include <cstring>
@@ -11,17 +10,6 @@ namespace fmi {
 using wheel::Topic;
 
 namespace {
-
-// In the order of the topics: the category, the status of the message, and that of a call that ends with it. At their
-// default level many masters hide messages of the status Discard.
-constexpr struct {
-  const char* category;
-  fmi2Status message, call;
-} topics[] = {{"logEvents", fmi2OK, fmi2OK},
-              {"logStatusWarning", fmi2Warning, fmi2OK},
-              {"logStatusError", fmi2Error, fmi2Error},
-              {"logStatusDiscard", fmi2Warning, fmi2Discard}};
-static_assert(std::size(topics) == static_cast<std::size_t>(Topic::discard) + 1);
 
 // A message is a format to the master, and '#' opens a variable name: both characters are doubled.
 void escape(const char* text, char* out, std::size_t size) {
@@ -54,27 +42,16 @@ const char* name_of_state(Phase phase) {
 
 }  // namespace
 
-const char* category_of(Topic topic) { return topics[static_cast<unsigned>(topic)].category; }
-
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : Handle{.mark = own_mark}, reporter{.owner = this, .listens = listens, .take = take}, wheel(reporter, kind) {
-  if (!callbacks) return;
-  logger_ = callbacks->logger;
-  environment_ = callbacks->componentEnvironment;
-}
+    : Handle{.mark = own_mark}, wheel(*this, kind), callbacks_(callbacks ? *callbacks : fmi2CallbackFunctions{}) {}
 
-bool Instance::listens(const void* instance, Topic topic) {
-  const Instance& i = *static_cast<const Instance*>(instance);
-  return i.logger_ && i.logged_topics & bits(topic);
-}
-
-void Instance::take(const void* instance, Topic topic, const char* message) {
-  const Instance& i = *static_cast<const Instance*>(instance);
-  char escaped[2 * wheel::Reporter::longest];
+void Instance::take(Topic topic, const char* message) const {
+  char escaped[2 * longest];
   escape(message, escaped, sizeof escaped);
-  i.arithmetic.give_back();
-  i.logger_(i.environment_, i.name_, topics[static_cast<unsigned>(topic)].message, category_of(topic), escaped);
-  i.arithmetic.take();
+  const auto [category, status, call] = category_of(topic);
+  arithmetic.give_back();
+  callbacks_.logger(callbacks_.componentEnvironment, name_, status, category, escaped);
+  arithmetic.take();
 }
 
 Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind) {
@@ -90,26 +67,24 @@ Instance* Instance::create(const char* name, const fmi2CallbackFunctions* callba
 
 // After the end of a run the message names the end, which helps a user more than the call state.
 fmi2Status Instance::refuse(const Rule& rule) {
-  const bool slave = wheel.kind() == wheel::Kind::co_simulation;
-  if (!rule.is_for(wheel.kind()))
+  const bool slave = wheel.demand.kind == wheel::Kind::co_simulation;
+  if (!rule.is_for(wheel.demand.kind))
     return log(Topic::error, "%s belongs to %s; this instance was made for %s.",
                slave ? "model exchange" : "co-simulation", slave ? "co-simulation" : "model exchange");
-  if (wheel.phase() == Phase::ended)
+  if (wheel.run.phase == Phase::ended)
     return log(Topic::error, "%s: the wheel %s at t = %s s. Restore a state or reset.",
                wheel::ending_of(wheel.run.in_force, wheel.run.ended_by).text, wheel.time());
-  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(wheel.phase()));
+  return log(Topic::error, "%s is not allowed in the state \"%s\".", name_of_state(wheel.run.phase));
 }
 
 fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::size_t count) {
   const fmi2ValueReference *const end = variables + count, *computed = variables;
   while (computed != end && *computed < wheel::stored_count) ++computed;
-  if (computed == end || has_state(wheel.phase())) return fmi2OK;
+  if (computed == end || has_state(wheel.run.phase)) return fmi2OK;
   if (!wheel::is_prepared(wheel)) return fmi2Discard;
-  const bool readable = has_state(wheel.phase());
+  const bool readable = has_state(wheel.run.phase);
   const char* const name = wheel::row_of(*computed).name;
   return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
 }
-
-fmi2Status Instance::status_of(Topic topic) { return topics[static_cast<unsigned>(topic)].call; }
 
 }  // namespace fmi

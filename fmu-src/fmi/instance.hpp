@@ -1,17 +1,55 @@
 // One FMU instance: the master's callbacks and the wheel. And the guard every call passes.
 #pragma once
 
+#include <bit>
+#include <cstdlib>
 #include <type_traits>
 
 #include "arithmetic.hpp"
 #include "fmi2Functions.h"
-#include "handle.hpp"
 #include "legality.hpp"
 #include "wheel.hpp"
 
 namespace fmi {
 
-struct Instance : Handle {
+// What is handed out to a master, which passes it back: instances and FMU states. Each begins with the mark of its
+// kind, so that a call checks a pointer without a list of all that are alive.
+struct Handle {
+  // Some masters pass a state where its address belongs; what they free is this null pointer.
+  const void* none = nullptr;
+  volatile std::uint64_t mark;  // else compilers drop the store that wipes it before the memory is freed
+};
+
+// Null unless the pointer is one of this kind. If not null, it must point to memory that can be read.
+template <class Handled>
+Handled* handle_of(void* passed) {
+  auto* const handle = static_cast<Handle*>(passed);
+  if (!handle || std::bit_cast<std::uintptr_t>(handle) % alignof(Handle) != 0) return nullptr;
+  return handle->mark == Handled::own_mark ? static_cast<Handled*>(handle) : nullptr;
+}
+
+template <class Handled>
+void release(Handled* handle) {
+  handle->mark = 0;
+  handle->~Handled();
+  std::free(handle);
+}
+
+// The category of a topic as modelDescription.xml names it, the status of its messages, and that of a call that ends
+// with one. At their default level many masters hide messages of the status Discard.
+struct Category {
+  const char* name;
+  fmi2Status message, call;
+};
+constexpr Category category_of(wheel::Topic topic) {
+  constexpr Category categories[] = {{"logEvents", fmi2OK, fmi2OK},
+                                     {"logStatusWarning", fmi2Warning, fmi2OK},
+                                     {"logStatusError", fmi2Error, fmi2Error},
+                                     {"logStatusDiscard", fmi2Warning, fmi2Discard}};
+  return categories[static_cast<unsigned>(topic)];
+}
+
+struct Instance final : Handle, wheel::Reporter {
   static constexpr std::uint64_t own_mark = 0x495f554d46484557;  // "WEHFMU_I"
 
   // One block of memory, the name included. What takes memory later: docs/decisions/package.md. Null if there is none.
@@ -21,13 +59,13 @@ struct Instance : Handle {
   // first. Returns the status of a call that ends with this message.
   template <class... Numbers>
   fmi2Status log(wheel::Topic topic, const char* format, Numbers... numbers) const {
-    reporter.log(topic, format, called, numbers...);
-    return status_of(topic);
+    Reporter::log(topic, format, called, numbers...);
+    return category_of(topic).call;
   }
   // Whether the call is sound; if not, the error is logged.
   template <class... Numbers>
   bool check(bool sound, const char* format, Numbers... numbers) const {
-    return reporter.check(sound, format, called, numbers...);
+    return Reporter::check(sound, format, called, numbers...);
   }
   // The end of a call by what is wrong; null: nothing.
   fmi2Status fail(const char* fault) const { return fault ? log(wheel::Topic::error, "%s: %s.", fault) : fmi2OK; }
@@ -41,7 +79,6 @@ struct Instance : Handle {
   // Logs that a function is not legal in the present state, or belongs to the other kind of instance.
   fmi2Status refuse(const Rule& rule);
 
-  const wheel::Reporter reporter;
   wheel::Wheel wheel;
   // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
   const char* called = nullptr;
@@ -50,17 +87,12 @@ struct Instance : Handle {
 
  private:
   Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind);
-  static bool listens(const void* instance, wheel::Topic topic);
-  static void take(const void* instance, wheel::Topic topic, const char* message);
-  static fmi2Status status_of(wheel::Topic topic);
+  bool listens(wheel::Topic topic) const override { return callbacks_.logger && logged_topics & bits(topic); }
+  void take(wheel::Topic topic, const char* message) const override;
 
-  fmi2CallbackLogger logger_ = nullptr;
-  fmi2ComponentEnvironment environment_ = nullptr;
-  const char* name_ = nullptr;  // behind the instance
+  const fmi2CallbackFunctions callbacks_;  // a copy: the master's pointer need not live longer than the creation
+  const char* name_ = nullptr;             // behind the instance
 };
-
-// The category of a topic as modelDescription.xml names it.
-const char* category_of(wheel::Topic topic);
 
 inline constexpr const char* no_fault = nullptr;
 
@@ -71,10 +103,10 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, 
   auto* const instance = handle_of<Instance>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
-  if (!rule.reads) instance->wheel.reading.forget();
+  if (!rule.reads) instance->wheel.reading.reset();
   instance->arithmetic.take();
   fmi2Status status = fmi2OK;
-  if (!rule.allows(instance->wheel.kind(), instance->wheel.phase()))
+  if (!rule.allows(instance->wheel.demand.kind, instance->wheel.run.phase))
     status = instance->refuse(rule);
   else if constexpr (std::is_void_v<decltype(body(*instance))>)
     body(*instance);

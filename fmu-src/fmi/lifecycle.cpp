@@ -12,11 +12,6 @@ namespace {
 
 bool is_blank(const char* text) { return !text || text[std::strspn(text, " \t\r\n")] == 0; }
 
-void complain(const fmi2CallbackFunctions* callbacks, const char* name, const char* message) {
-  if (callbacks && callbacks->logger)
-    callbacks->logger(callbacks->componentEnvironment, name ? name : "", fmi2Error, "logStatusError", message);
-}
-
 // Null where the instance may be created, else the reason why not. A number outside of the enumeration cannot be read
 // as its type.
 const char* refusal(const char* name, const fmi2Type& asked, const char* guid) {
@@ -32,7 +27,7 @@ const char* refusal(const char* name, const fmi2Type& asked, const char* guid) {
 unsigned topics_of(const char* category) {
   unsigned topics = 0;
   for (const Topic topic : {Topic::event, Topic::warning, Topic::error, Topic::discard})
-    if (category && (!std::strcmp(category, "logAll") || !std::strcmp(category, fmi::category_of(topic))))
+    if (category && (!std::strcmp(category, "logAll") || !std::strcmp(category, fmi::category_of(topic).name)))
       topics |= fmi::bits(topic);
   return topics;
 }
@@ -62,7 +57,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   const bool slave = !reason && type == fmi2CoSimulation;
   const auto kind = slave ? wheel::Kind::co_simulation : wheel::Kind::model_exchange;
   Instance* const instance = reason ? nullptr : Instance::create(name, callbacks, logging != fmi2False, kind);
-  if (!instance) complain(callbacks, name, reason ? reason : "fmi2Instantiate: out of memory.");
+  if (!instance && callbacks && callbacks->logger)
+    callbacks->logger(callbacks->componentEnvironment, name ? name : "", fmi2Error, "logStatusError",
+                      reason ? reason : "fmi2Instantiate: out of memory.");
   return static_cast<fmi::Handle*>(instance);
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exchange.hpp"
 #include "instance.hpp"
 
 using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic, wheel::Wheel;
@@ -24,7 +23,7 @@ fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], st
                         const char* what, void (*read)(Wheel&, double*)) {
   return guarded(c, legality::get_states, name, [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
-    if (!wheel::is_prepared(i.wheel) || !has_state(i.wheel.phase())) return fmi2Discard;
+    if (!wheel::is_prepared(i.wheel) || !has_state(i.wheel.run.phase)) return fmi2Discard;
     read(i.wheel, values);
     if (are_finite(values, count)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.wheel.time(), what);
@@ -34,7 +33,7 @@ fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], st
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
 fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase mode) {
   return guarded(c, rule, name, [=](Instance& i) {
-    if (i.wheel.phase() != Phase::ended) i.wheel.run.phase = mode;
+    if (i.wheel.run.phase != Phase::ended) i.wheel.run.phase = mode;
   });
 }
 

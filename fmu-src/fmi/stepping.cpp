@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "instance.hpp"
-#include "motion.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;
@@ -32,9 +31,6 @@ bool check_step(const Instance& i, double t, double h) {
          i.check(same_time(t, reached, h), "%s from %s s: the FMU has reached %s s.", t, reached) &&
          i.check(!is_past(t + h, stop), "%s to %s s: the stop time is %s s.", t + h, stop);
 }
-
-// Of the last step, where its status may be asked for.
-fmi2Status last_status(const Instance& i) { return i.wheel.has_ended() ? fmi2Discard : fmi2OK; }
 
 constexpr long long no_status = 0x100000000;  // beyond what a caller can pass
 
@@ -70,7 +66,8 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value, last_status);
+  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value,
+                    [](Instance& i) { return i.wheel.has_ended() ? fmi2Discard : fmi2OK; });
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
@@ -84,7 +81,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
   return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
-                    [](Instance& i) { return last_status(i) == fmi2Discard ? fmi2True : fmi2False; });
+                    [](Instance& i) { return i.wheel.has_ended() ? fmi2True : fmi2False; });
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "exchange.hpp"
 #include "instance.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;
@@ -44,32 +43,29 @@ fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
 // Parameters before the run, inputs and the road at any time, the states while another solver moves them.
 bool check_settable(const Instance& i, fmi2ValueReference variable) {
   const wheel::Row& row = wheel::row_of(variable);
-  const bool running = is_running(i.wheel.phase());
+  const bool running = is_running(i.wheel.run.phase);
   if (variable < wheel::stored_count)
     return i.check(!running || row.role != Role::parameter, "%s: \"%s\" cannot be set after initialization.", row.name);
-  return i.check(running && i.wheel.kind() == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
+  return i.check(running && i.wheel.demand.kind == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
                  "%s: \"%s\" is calculated and cannot be set.", row.name);
 }
 
 // During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are logged
 // together at the end of initialization.
 bool check_value(Instance& i, fmi2ValueReference variable, double value) {
-  const wheel::Row& row = wheel::row_of(variable);
-  const bool bounded = variable < wheel::stored_count, low = bounded && value < row.min;
-  const bool high = bounded && wheel::is_above(variable, value);
-  const bool switches = variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.sliding;
-  if (!is_running(i.wheel.phase()) || (std::isfinite(value) && !low && !high && !switches)) return true;
-  const double kept = wheel::value_of(i.wheel, variable);
-  const char* const bound = low ? "at least" : variable == wheel::variable::slope ? "less than" : "at most";
-  if (!std::isfinite(value))
-    i.log(Topic::discard, "%s: %s = %s: a finite number is needed; the value stays %s.", row.name, value, kept);
-  else if (low || high)
-    i.log(Topic::discard, "%s: %s = %s: it must be %s %s; the value stays %s.", row.name, value, bound,
-          low ? row.min : row.max, kept);
-  else
-    i.log(Topic::discard, "%s: %s = %s: whether the wheel can slide is decided at the start; the value stays %s.",
-          row.name, value, kept);
-  return false;
+  if (!is_running(i.wheel.run.phase)) return true;
+  const auto refuse = [&](const char* reason, auto... limit) {
+    const double kept = wheel::value_of(i.wheel, variable);
+    i.log(Topic::discard, reason, wheel::row_of(variable).name, value, limit..., kept);
+    return false;
+  };
+  const wheel::Limit passed = wheel::limit_passed(variable, value);
+  if (!std::isfinite(value)) return refuse("%s: %s = %s: a finite number is needed; the value stays %s.");
+  if (passed.relation)
+    return refuse("%s: %s = %s: it must be %s %s; the value stays %s.", passed.relation, passed.value);
+  if (variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.sliding)
+    return refuse("%s: %s = %s: whether the wheel can slide is decided at the start; the value stays %s.");
+  return true;
 }
 
 template <class Value>

@@ -5,50 +5,39 @@
 #include <iterator>
 #include <utility>
 
-#include "contact.hpp"
 #include "law.hpp"
 
 namespace wheel {
 namespace {
 
-// An input that varies can make a regularized law stiff.
-bool varies_and_can_stiffen(const Setup& setup, const InForce& now) {
-  return now.inputs.varies && can_stiffen(setup, now);
-}
-
-double softness(const Setup& setup, const InForce& now, double t, const double* y) {
-  return softness_of(setup, now.scene_at(t), y);
-}
-
-// The law that is decided where the layer of a stiff regularized law is entered, left, or begins to hold the wheel.
 bool is_passing(const Setup&, const InForce& now) { return now.layer == Layer::passing; }
-bool is_layered(const Setup&, const InForce& now) { return now.layer != Layer::none; }
+
+// An input that varies can make a regularized law stiff.
+bool has_layer_ahead(const Setup& setup, const InForce& now) {
+  return now.layer != Layer::none || (now.inputs.varies && can_stiffen(setup, now));
+}
 
 // What holding leaves unused.
 double holding_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  return holding_reserve(setup, now.scene_at(t), y) / setup.moment_scale;
+  return held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
 }
 
 double holding_lacks(const Setup& setup, const InForce& now, double t, const double* y) {
   return -holding_left(setup, now, t, y);
 }
 
-double way_to_edge(const Setup& setup, const InForce& now, double, const double* y) {
+double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
+  if (now.layer == Layer::none) return softness_of(setup, now.scene_at(t), y);
   const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
   const bool outside = now.layer == Layer::outside;
   return (outside ? now.scene.friction.sigma * omega_z - edge : edge - std::fabs(omega_z)) / setup.rate_scale;
-}
-
-Consequence change_layer(const Setup& setup, Event, double t, double* y, InForce& now) {
-  decide_law(setup, t, y, now);
-  return Consequence::bends;
 }
 
 // How far the mode of friction is from its end: rolling, omega_z over the wheel's own rate; held, what holding leaves
 // unused. In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
-  if (law == WHEEL_FRICTIONLESS) return setup.kind == Kind::model_exchange;
+  if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && now.layer == Layer::none);
 }
 
@@ -64,16 +53,10 @@ int spin_alone(const Setup& setup, const InForce& now) {
   return now.scene.friction.kind == WHEEL_ROLLING ? setup.formulation->spin_index : -1;
 }
 
-Consequence change_spin(const Setup& setup, Event, double t, double* y, InForce& now) {
+void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
   decide_law(setup, t, y, now, law == WHEEL_HELD);
-  return Consequence::bends;
-}
-
-Consequence lose_grip(const Setup& setup, Event, double t, double* y, InForce& now) {
-  begin_slide(setup, t, y, now);
-  return Consequence::bends;
 }
 
 bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
@@ -84,20 +67,17 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   const int slip = setup.sliding->slip_index;
   double least = least_slip(setup, t);
   if (y[slip] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
-    const WheelScene scene = now.scene_at(t);
-    double y_dot[WHEEL_MAX_STATES];
-    setup.sliding->derivative(&scene, y, y_dot);
-    const double fall = std::fmin(y_dot[slip], 0), turning = y[slip] * y_dot[slip + 1];
+    const Rates rates = rates_of(setup, now.scene_at(t), y);
+    const double fall = std::fmin(rates.y_dot[slip], 0), turning = y[slip] * rates.y_dot[slip + 1];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.own_time * setup.own_time / setup.length);
   }
   return (y[slip] - least) / setup.slip_scale;
 }
 
-Consequence end_slip(const Setup& setup, Event, double t, double* y, InForce& now) {
+void end_slip(const Setup& setup, double t, double* y, InForce& now) {
   y[setup.sliding->slip_index] = 0;
   decide_contact(setup, t, y, now);
-  return Consequence::bends;
 }
 
 bool always(const Setup&, const InForce&) { return true; }
@@ -112,24 +92,17 @@ double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
 }
 
-// The ground begins to pull or to press. Without friction the motion goes on as it was.
-Consequence change_contact(const Setup&, Event event, double, double*, InForce& now) {
-  now.set_below(event, !now.is_below(event));
-  const bool same = now.scene.friction.kind == WHEEL_FRICTIONLESS && !now.slides();
-  return same ? Consequence::goes_on : Consequence::bends;
-}
-
 // Model exchange leaves a stiff law to the caller's solver.
 constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
-  return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = change_layer};
+  const auto follow = [](const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); };
+  return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = follow};
 }
 
 }  // namespace
 
 constexpr EventRow event_rows[] = {
-    layer_event(Event::stiffens, varies_and_can_stiffen, softness),
     layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
-    layer_event(Event::crosses_layer, is_layered, way_to_edge),
+    layer_event(Event::changes_layer, has_layer_ahead, way_to_layer),
     {.event = Event::spin_changes,
      .can_occur = can_change_spin,
      .value = spin_left,
@@ -139,7 +112,7 @@ constexpr EventRow event_rows[] = {
      .can_occur = [](const Setup& setup, const InForce& now) { return is_limited(setup, now.road) && !now.slides(); },
      .value = grip_left,
      .ends = [](const Setup& setup) { return !setup.sliding; },
-     .follow = lose_grip,
+     .follow = begin_slide,
      .ending = "needs a friction coefficient above mu_max",
      .limit = [](const InForce& now) { return now.road.mu_max; }},
     {.event = Event::slip_ends, .can_occur = is_sliding, .value = slip_left, .exchanged = false, .follow = end_slip},
@@ -148,7 +121,6 @@ constexpr EventRow event_rows[] = {
      .quick_value = pressure_of,
      .rounding = 1e-9,
      .ends = [](const Setup& setup) { return !setup.keep_contact; },
-     .follow = change_contact,
      .ending = "lifted off the ground",
      .observed = "the ground pulls; without keep_contact the wheel would lift off"},
     {.event = Event::jams,
@@ -169,7 +141,7 @@ namespace {
 
 constexpr bool is_sound(const EventRow& row) {
   return row.event == static_cast<Event>(&row - event_rows + 1) && !row.value == !!row.quick_value && row.can_occur &&
-         !row.ends == !row.ending && (row.follow || row.ends);
+         !row.ends == !row.ending && (row.follow || row.ends || row.observed);
 }
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
@@ -181,16 +153,17 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 
 }  // namespace
 
-Consequence observe(const Setup&, Event event, double, double*, InForce& now) {
-  now.set_below(event, !now.is_below(event));
-  return Consequence::goes_on;
+// Where the ground begins to pull or to press, the motion goes on as it was if there is no friction.
+Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
+  if (row.follow) row.follow(setup, t, y, now);
+  if (row.observed) now.set_below(row.event, !now.is_below(row.event));
+  const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();
+  return row.follow || (row.event == Event::lost_contact && acts) ? Consequence::bends : Consequence::goes_on;
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
   if (row.value) return signed_margin(row, now, row.value(setup, now, t, y));
-  double y_dot[WHEEL_MAX_STATES];
-  const WheelScene scene = now.scene_at(t);
-  return signed_margin(row, now, row.quick_value(setup, y, formulation_of(setup, scene).derivative(&scene, y, y_dot)));
+  return signed_margin(row, now, row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N));
 }
 
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {

@@ -27,9 +27,8 @@ struct EventRow {
   double rounding = 0;                         // of an observed event: a value beyond zero by less does not count
   bool exchanged = true;                       // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
-  // What follows where it does not end the run: what is in force from here on, the state (a rate of zero exactly), and
-  // whether the motion goes on as before. An event that is only observed has `observe`.
-  Consequence (*follow)(const Setup& setup, Event event, double t, double* y, InForce& now) = nullptr;
+  // What is in force from here on, and the state (a rate of zero exactly), where it bends the motion.
+  void (*follow)(const Setup& setup, double t, double* y, InForce& now) = nullptr;
   // For messages, as plain text: what has ended the run, to stand behind "the wheel"; the value of the parameter at its
   // end, if it names one; and what is observed, to stand behind the instant.
   const char* ending = nullptr;
@@ -37,15 +36,15 @@ struct EventRow {
   const char* observed = nullptr;
 };
 
-// An event that is counted and logged, but changes nothing.
-Consequence observe(const Setup& setup, Event event, double t, double* y, InForce& now);
-
 inline constexpr int row_count = event_count - 1;
 extern const EventRow event_rows[row_count];  // in the order of Event
 inline const EventRow& row_of(Event event) { return event_rows[static_cast<int>(event) - 1]; }
 inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends && row.ends(setup); }
 // Counted, and logged where it occurs.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }
+
+// An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
+Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);
 

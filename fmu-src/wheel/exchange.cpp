@@ -1,14 +1,11 @@
-// Model exchange: states, indicators, decisions at events.
-#include "exchange.hpp"
-
+// Model exchange: states, indicators, decisions at events, by the functions that co-simulation uses.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
+#include "events.hpp"
 #include "law.hpp"
-#include "logbook.hpp"
-#include "motion.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
@@ -25,22 +22,31 @@ constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       vari
                                         variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
 static_assert(std::size(state_variables) == state_count);
 
-auto above_ground(const Setup& setup, const double* y) {
-  std::array<double, WHEEL_MAX_STATES> trial = {};
-  std::copy_n(y, state_count, trial.data());
-  double& theta = trial[setup.formulation->tilt_index];
+void keep_above_ground(const Setup& setup, double* y) {
+  double& theta = y[setup.formulation->tilt_index];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
-  return trial;
 }
 
-double margin_at(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  const bool tilts = row.event == Event::fell_flat;
-  return margin_of(row, setup, now, t, tilts ? y : above_ground(setup, y).data());
+// At the instant reached, or `ahead` s later along the present rates.
+double margin_at(const EventRow& row, const Setup& setup, const Run& run, double ahead = 0) {
+  double y[WHEEL_MAX_STATES];
+  std::copy_n(run.y, WHEEL_MAX_STATES, y);
+  if (ahead > 0) {
+    const Rates rates = rates_of(setup, run.in_force.scene, run.y);
+    for (int i = 0; i < state_count; ++i) y[i] += ahead * rates.y_dot[i];
+  }
+  if (row.event != Event::fell_flat) keep_above_ground(setup, y);
+  return margin_of(row, setup, run.in_force, run.t + ahead, y);
 }
 
 double indicator(const EventRow& row, const Setup& setup, const Run& run) {
-  if (!row.can_occur(setup, run.in_force)) return 1;
-  return margin_at(row, setup, run.in_force, run.t, run.y) + distance;
+  return row.can_occur(setup, run.in_force) ? margin_at(row, setup, run) + distance : 1;
+}
+
+// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred.
+bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
+  if (!row.exchanged || !row.can_occur(setup, run.in_force)) return false;
+  return margin_at(row, setup, run) <= 0 || margin_at(row, setup, run, soon * setup.own_time) <= 0;
 }
 
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else
@@ -49,10 +55,30 @@ bool is_led(const Setup& setup, const Run& run) {
   const WheelScene& scene = run.in_force.scene;
   const double spin = run.y[setup.formulation->spin_index] / setup.rate_scale;
   if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
-  double rates[WHEEL_MAX_STATES];
-  setup.formulation->derivative(&scene, run.y, rates);
-  const double rate = scene.friction.sigma * rates[setup.formulation->spin_index] / setup.rate_scale;
+  const double omega_z_dot = rates_of(setup, scene, run.y).y_dot[setup.formulation->spin_index];
+  const double rate = scene.friction.sigma * omega_z_dot / setup.rate_scale;
   return scene.friction.sigma * spin >= std::fmin(rate, 0) * setup.longest_step - spin_error;
+}
+
+// The event by which the model ends at the instant reached.
+Event ending_at(const Setup& setup, const Run& run) {
+  Event ending = Event::none;
+  for (const EventRow& row : event_rows)
+    if (ends_run(row, setup) && has_occurred(row, setup, run)) ending = row.event;
+  return ending;
+}
+
+// A wheel that has just been stopped can be let go at once.
+void decide_friction(const Setup& setup, Run& run, bool led) {
+  const EventRow& row = row_of(Event::spin_changes);
+  const WheelFrictionKind& law = run.in_force.scene.friction.kind;
+  const WheelFrictionKind before = law;
+  const auto change = [&] { pass(row, setup, run.t, run.y, run.in_force); };
+  if (led && has_occurred(row, setup, run))
+    change();
+  else
+    decide_law(setup, run.t, run.y, run.in_force);
+  if (law == WHEEL_HELD && before != law && has_occurred(row, setup, run)) change();
 }
 
 }  // namespace
@@ -67,26 +93,14 @@ int state_index_of(unsigned variable) {
   return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
 }
 
-bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
-  const InForce& now = run.in_force;
-  if (!row.exchanged || !row.can_occur(setup, now)) return false;
-  if (margin_at(row, setup, now, run.t, run.y) <= 0) return true;
-  const double time = soon * setup.own_time;
-  double ahead[WHEEL_MAX_STATES], rates[WHEEL_MAX_STATES];
-  setup.formulation->derivative(&now.scene, run.y, rates);
-  for (int i = 0; i < state_count; ++i) ahead[i] = run.y[i] + time * rates[i];
-  return margin_at(row, setup, now, run.t + time, ahead) <= 0;
-}
-
-void take_at_once(Wheel& w) {
+void apply_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
-  const Road before = now.road;
-  let_act(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
+  const InForce before = now;
+  apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.changed = false;
-  if (now.road == before || w.phase() == Phase::event_mode) return;
-  const WheelFriction law = now.scene.friction;
+  if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);
-  log_transition(w, law);
+  log_changes(w, before);
 }
 
 void states(Wheel& w, double* x) { std::copy_n(w.run.y, state_count, x); }
@@ -94,8 +108,11 @@ void states(Wheel& w, double* x) { std::copy_n(w.run.y, state_count, x); }
 void nominals(Wheel& w, double* x) { scales_at(w.setup, w.run.y[w.setup.formulation->spin_index], x); }
 
 void derivatives(Wheel& w, double* x_dot) {
+  double y[WHEEL_MAX_STATES];
+  std::copy_n(w.run.y, WHEEL_MAX_STATES, y);
+  keep_above_ground(w.setup, y);
   ++w.run.counted.rhs;
-  w.setup.formulation->derivative(&w.run.in_force.scene, above_ground(w.setup, w.run.y).data(), x_dot);
+  w.setup.formulation->derivative(&w.run.in_force.scene, y, x_dot);
 }
 
 void indicators(Wheel& w, double* z) {
@@ -113,44 +130,31 @@ bool has_event(Wheel& w) {
 bool decide(Wheel& w) {
   const Setup& setup = w.setup;
   Run& run = w.run;
-  InForce& now = run.in_force;
-  const WheelFriction law = now.scene.friction;
-  const WheelGround ground = now.scene.ground;
-  const double spin = run.y[setup.formulation->spin_index];
+  const InForce before = run.in_force;
+  const WheelFriction& law = before.scene.friction;
+  double& omega_z = run.y[setup.formulation->spin_index];
+  const double spin = omega_z;
   const bool led = is_led(setup, run);
-  if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&now.scene.wheel, run.y);
-  Event ending = Event::none;
-  for (const EventRow& row : event_rows)
-    if (ends_run(row, setup) && has_occurred(row, setup, run)) ending = row.event;
-  if (ending != Event::none) {
+  if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&run.in_force.scene.wheel, run.y);
+  if (const Event ending = ending_at(setup, run); ending != Event::none) {
     end_run(w, ending);
     return false;
   }
-  const EventRow& changes = row_of(Event::spin_changes);
   for (const EventRow& row : event_rows)
-    if (&row != &changes && !ends_run(row, setup) && has_occurred(row, setup, run)) pass_event(w, row.event);
-  // The law is decided anew in each event mode. A wheel that has just been stopped can be let go at once.
-  const auto change = [&] { changes.follow(setup, changes.event, run.t, run.y, now); };
-  if (led && has_occurred(changes, setup, run))
-    change();
-  else
-    decide_law(setup, run.t, run.y, now);
-  const bool sticks = law.kind != WHEEL_HELD && now.scene.friction.kind == WHEEL_HELD;
-  if (sticks && has_occurred(changes, setup, run)) change();
-  log_transition(w, law);
-  const bool jumps = run.y[setup.formulation->spin_index] != spin;
-  return jumps || differ(law, now.scene.friction) || ground != now.scene.ground;
+    if (row.event != Event::spin_changes && !ends_run(row, setup) && has_occurred(row, setup, run))
+      pass_event(w, row.event);
+  decide_friction(setup, run, led);
+  log_changes(w, before);
+  const WheelScene& scene = run.in_force.scene;
+  return omega_z != spin || differ(law, scene.friction) || scene.ground != before.scene.ground;
 }
 
 bool starts_inside(const Wheel& w) {
-  const EventRow* fault = nullptr;
-  for (const EventRow& row : event_rows)
-    if (ends_run(row, w.setup) && has_occurred(row, w.setup, w.run)) fault = &row;
-  if (!fault) return true;
-  WheelDynamics dynamics;
-  w.setup.formulation->dynamics(&w.run.in_force.scene, w.run.y, &dynamics);
+  const Event ending = ending_at(w.setup, w.run);
+  if (ending == Event::none) return true;
+  const WheelDynamics dynamics = dynamics_of(w.setup, w.run.in_force.scene, w.run.y);
   w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the run ends there.",
-                 ending_of(w.run.in_force, fault->event).text, Digits{dynamics.lambda[2], 6},
+                 ending_of(w.run.in_force, ending).text, Digits{dynamics.lambda[2], 6},
                  Digits{wheel_required_friction(dynamics.lambda), 6});
   return false;
 }

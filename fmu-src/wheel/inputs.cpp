@@ -9,11 +9,12 @@
 namespace wheel {
 namespace {
 
-double evaluate(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
-double slope(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
+double value_at(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
+double rate_at(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
-bool acts(const double* first, const double* last) {
-  return std::any_of(first, last, [](double part) { return part != 0; });
+// Whether a coefficient from the order `from` on is not zero.
+bool acts(const double* c, int from) {
+  return std::any_of(c + from, c + max_order + 1, [](double part) { return part != 0; });
 }
 
 // Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their number.
@@ -29,9 +30,9 @@ int zeros_of_slope(const double* c, double* zeros) {
 // Whether `next` is c seen from tau on.
 bool continues(const double* c, double tau, double rounding, const double* next) {
   constexpr double relative = 64 * std::numeric_limits<double>::epsilon();
-  const double shifted[] = {evaluate(c, tau), slope(c, tau), c[2] + 3 * tau * c[3], c[3], 0};
+  const double shifted[] = {value_at(c, tau), rate_at(c, tau), c[2] + 3 * tau * c[3], c[3], 0};
   const double size[] = {std::fabs(c[0]), std::fabs(c[1]), std::fabs(c[2]), std::fabs(c[3])}, length = std::fabs(tau);
-  const double sums[] = {evaluate(size, length), slope(size, length), size[2] + 3 * length * size[3], size[3]};
+  const double sums[] = {value_at(size, length), rate_at(size, length), size[2] + 3 * length * size[3], size[3]};
   for (int k = 0; k <= max_order; ++k)
     if (!(std::fabs(shifted[k] - next[k]) <= relative * sums[k] + rounding * (k + 1) * std::fabs(shifted[k + 1])))
       return false;
@@ -48,7 +49,7 @@ double* load_entry(WheelLoad& load, int input) {
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
 WheelLoad load_of(const Polynomials& inputs, double tau) {
   WheelLoad load;
-  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = evaluate(inputs[i], tau);
+  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
   if (!(load.brake > 0)) load.brake = 0;
   return load;
 }
@@ -63,12 +64,12 @@ WheelLoad load_rate_of(const Polynomials& inputs) {
 void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
   std::memcpy(c, asked, sizeof c);
-  const auto any = [&](int from) {
-    return std::any_of(c, c + inputs_count, [=](const double* own) { return acts(own + from, own + max_order + 1); });
-  };
-  varies = any(1);
-  loaded = any(0);
-  braked = acts(c[brake_input], c[brake_input] + max_order + 1);
+  loaded = varies = false;
+  for (const auto& polynomial : c) {
+    loaded |= acts(polynomial, 0);
+    varies |= acts(polynomial, 1);
+  }
+  braked = acts(c[brake_input], 0);
 }
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {
@@ -81,7 +82,7 @@ bool Inputs::change_at(double t, double rounding, const Polynomials& asked) cons
 void Inputs::stay(double t, Polynomials& asked) const {
   for (int i = 0; i < inputs_count; ++i) {
     std::fill_n(asked[i] + 1, max_order, 0.0);
-    asked[i][0] = evaluate(c[i], t - origin);
+    asked[i][0] = value_at(c[i], t - origin);
   }
   asked[brake_input][0] = std::fmax(asked[brake_input][0], 0);  // like any brake that is set
 }
@@ -102,7 +103,7 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
 
 // Between two extremes the polynomial passes zero once: by halving, to the last bit of the time.
 double Inputs::corner(double t, double until) const {
-  const auto brakes = [&](double at) { return evaluate(c[brake_input], at - origin) > 0; };
+  const auto brakes = [&](double at) { return value_at(c[brake_input], at - origin) > 0; };
   double ends[most_extremes + 1];
   int pieces = extremes(t, until, ends);
   ends[pieces++] = until;

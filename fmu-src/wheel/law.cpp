@@ -1,4 +1,4 @@
-// The law of friction after Filippov.
+// The laws of the contact: rolling friction, the start and the end of a slide.
 #include "law.hpp"
 
 #include <algorithm>
@@ -7,68 +7,141 @@
 namespace wheel {
 namespace {
 
-// A wheel that is held: the moment about the axle, N m, and what of the capacity s N + M_brake is left, N m.
-struct Held {
-  double tau, reserve;
-};
-
-Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
-  constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
-  WheelScene trial = scene;
-  trial.friction = {WHEEL_HELD, 0, 0};
-  WheelDynamics held;
-  formulation_of(setup, scene).dynamics(&trial, y, &held);
-  const double capacity = scene.wheel.s * std::max(held.lambda[2], 0.0) + scene.load.brake;
-  const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
-  return {held.tau, capacity + rounding - std::fabs(held.tau)};
-}
+constexpr WheelFriction frictionless = {WHEEL_FRICTIONLESS, 0, 0}, held = {WHEEL_HELD, 0, 0};
+WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.0, 0}; }
+WheelFriction regularized(const Setup& setup) { return {WHEEL_REGULARIZED, 0, setup.omega_s}; }
 
 // Rolling against the moment that would hold the wheel.
-WheelFriction against(const Held& held) { return {WHEEL_ROLLING, held.tau > 0 ? -1.0 : 1.0, 0}; }
+WheelFriction released_from(const Held& hold) { return rolling(!(hold.tau > 0)); }
+
+// The law apart from layers.
+WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
+  if (scene.wheel.s == 0 && !braked) return frictionless;
+  if (setup.friction_law == regularized_law) return regularized(setup);
+  const double omega_z = y[setup.formulation->spin_index];
+  if (omega_z != 0) return rolling(omega_z > 0);
+  const Held hold = held_at(setup, scene, y);
+  return hold.reserve >= 0 ? held : released_from(hold);
+}
 
 void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, InForce& now) {
   const double omega_z = y[setup.formulation->spin_index];
   if (std::fabs(omega_z) > layer_edge(setup)) {
     now.layer = Layer::outside;
-    now.scene.friction = {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
+    now.scene.friction = rolling(omega_z > 0);
   } else {
-    now.layer = holding_reserve(setup, scene, y) >= 0 ? Layer::sticking : Layer::passing;
-    now.scene.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
+    now.layer = held_at(setup, scene, y).reserve >= 0 ? Layer::sticking : Layer::passing;
+    now.scene.friction = regularized(setup);
   }
+}
+
+// The laws to try where the wheel starts to slide: without spin, with rolling friction or brake, first that it is held.
+bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
+  const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
+  return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
+}
+
+// Whether a law of a wheel without spin agrees with the motion that it gives.
+bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
+  if (scene.friction.kind == WHEEL_HELD) return held_at(setup, scene, y).reserve >= 0;
+  return scene.friction.sigma * dynamics_of(setup, scene, y).omega_z_dot >= 0;
 }
 
 }  // namespace
 
-WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
-  if (scene.wheel.s == 0 && !braked) return {WHEEL_FRICTIONLESS, 0, 0};
-  if (setup.friction_law == regularized_law) return {WHEEL_REGULARIZED, 0, setup.omega_s};
-  const double omega_z = y[setup.formulation->spin_index];
-  if (omega_z != 0) return {WHEEL_ROLLING, omega_z > 0 ? 1.0 : -1.0, 0};
-  const Held held = held_at(setup, scene, y);
-  return held.reserve >= 0 ? WheelFriction{WHEEL_HELD, 0, 0} : against(held);
+void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
+  apply_loads(setup, road_asked(demand), t, demand.inputs, now);
+  now.layer = Layer::none;
+  decide_contact(setup, t, y, now);
 }
 
-void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
+void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
   now.road = road;
   now.scene.wheel = setup.wheel;
   now.scene.wheel.s = road.s;
   if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.wheel.g, road.slope, road.slope_direction);
   now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
+  now.scene.ground = now.pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
   now.scene.guided = setup.guided;
   now.scene.load = load_of(inputs);
   now.inputs.take_over(t, inputs);
 }
 
+void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
+  const bool slips_on = now.slides() && y[setup.sliding->slip_index] > least_slip(setup, t);
+  if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
+  if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
+  now.scene.contact = WHEEL_GRIPS;
+  decide_law(setup, t, y, now);
+  if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
+}
+
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
   WheelScene scene = now.scene_at(t);
-  scene.friction = released ? against(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
+  scene.friction = released ? released_from(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
   const bool stiff = can_stiffen(setup, now) && softness_of(setup, scene, y) < 0;
   if (stiff || now.layer != Layer::none) enter_layer(setup, scene, y, now);
 }
 
+void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
+  now.scene.contact = WHEEL_SLIDES;
+  WheelScene scene = now.scene_at(t);
+  const auto take = [&](const WheelFriction& law) {
+    scene.friction = now.scene.friction = law;
+    y[setup.sliding->slip_index] = 2 * least_slip(setup, t);
+    y[setup.sliding->slip_index + 1] = first_direction(setup, scene, y);
+  };
+  if (may_be_held(setup, now, y)) {
+    for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {
+      take(law);
+      if (agrees(setup, scene, y)) break;
+    }
+  } else {
+    take(friction_at(setup, scene, now.inputs.braked, y));
+    decide_law(setup, t, y, now);
+  }
+}
+
+double first_direction(const Setup& setup, const WheelScene& scene, const double* y) {
+  double reduced[WHEEL_MAX_STATES];
+  setup.sliding->reduce(y, reduced);
+  const double chi = wheel_slip_direction(&scene, reduced);
+  if (!std::isnan(chi)) return chi;
+  WheelScene pulled = scene;
+  pulled.ground = WHEEL_GROUND_PULLS;
+  const WheelSlip free = wheel_slip(&pulled, reduced, 0);
+  return wheel_angle_of(free.growth, free.turn);
+}
+
+double least_slip(const Setup& setup, double t) {
+  constexpr double part = 0.01, roundings = 128;
+  return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
+}
+
+// Rounding is relative to mu_max N, and that of a tangential force of zero.
+double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
+  constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
+  const WheelDynamics dynamics = dynamics_of(setup, now.scene_at(t), y);
+  const double* lambda = dynamics.lambda;
+  const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
+  const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
+  const double N = lambda[2] / full * (1 + rounding) + rounding_of_zero / mu_max;
+  return N * std::fabs(N) - (X * X + Y * Y);
+}
+
+Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
+  WheelScene trial = scene;
+  trial.friction = held;
+  const WheelDynamics dynamics = dynamics_of(setup, trial, y);
+  const double capacity = scene.wheel.s * std::max(dynamics.lambda[2], 0.0) + scene.load.brake;
+  const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
+  return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};
+}
+
 bool can_stiffen(const Setup& setup, const InForce& now) {
-  const bool asked = setup.method == automatic_method && setup.kind == Kind::co_simulation;
+  const bool asked = setup.method == automatic_method && !setup.exchanged;
   return asked && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
 }
 
@@ -78,13 +151,8 @@ double softness_of(const Setup& setup, const WheelScene& scene, const double* y)
   constexpr double stiff = 1000;
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
-  double y_dot[WHEEL_MAX_STATES];
-  const double N = std::max(setup.weight, formulation_of(setup, scene).derivative(&scene, y, y_dot));
+  const double N = std::max(setup.weight, rates_of(setup, scene, y).N);
   return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
-}
-
-double holding_reserve(const Setup& setup, const WheelScene& scene, const double* y) {
-  return held_at(setup, scene, y).reserve;
 }
 
 }  // namespace wheel

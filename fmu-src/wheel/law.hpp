@@ -1,27 +1,53 @@
-// What acts on the wheel from an instant on: road, inputs, and the law of friction after Filippov. Pure functions of
-// setup, load and state.
+// What acts on the wheel from an instant on: road and inputs, the law of rolling friction after Filippov, and whether
+// the wheel rolls or slides after Coulomb. Pure functions of setup, load and state.
 #pragma once
 
 #include "run.hpp"
 
 namespace wheel {
 
-// What acts from t on: road and inputs. A mu_max set below mu_slide counts for both.
-void let_act(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
+// What the caller has set is in force from t on, and with it the contact and the law of friction at the state y. Writes
+// the slip in y.
+void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
-// The law apart from layers; `braked`: the brake is in use.
-WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y);
+// Road and inputs, and what follows from them alone. A mu_max set below mu_slide counts for both.
+void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
+
+// Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel rolls where it can,
+// and begins to slide where it cannot. Writes the slip in y.
+void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
 // Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
 // wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold
 // it. A stiff regularized law is decided by the place of omega_z in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
 
+// The wheel, without slip at y, starts to slide: Coulomb's law, in the direction in which it lets a slip grow and stay.
+void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
+
+// The direction in which a slip begins, at the state y of a wheel that slides. Without one the event that ends the run
+// follows at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
+double first_direction(const Setup& setup, const WheelScene& scene, const double* y);
+
+// m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as much:
+// small parts of the tolerance, and large enough for the digits of an instant.
+double least_slip(const Setup& setup, double t);
+
+// Whether the road limits the force of rolling: mu_max = 0 is no limit, and of a wheel that can slide no friction.
+inline bool is_limited(const Setup& setup, const Road& road) { return setup.sliding || road.mu_max > 0; }
+
+// N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that rolls; below zero too where the ground pulls.
+double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
+
 // Whether two laws differ in kind, or in the side to which the wheel spins.
 inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
 
-// s N + M_brake - |tau| of a held wheel, N m; where rounding alone decides, the wheel stays held.
-double holding_reserve(const Setup& setup, const WheelScene& scene, const double* y);
+// A wheel that is held: the moment about the axle, N m, and s N + M_brake - |tau|, N m, which is left; where rounding
+// alone decides, the wheel stays held.
+struct Held {
+  double tau, reserve;
+};
+Held held_at(const Setup& setup, const WheelScene& scene, const double* y);
 
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.

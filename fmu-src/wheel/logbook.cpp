@@ -1,16 +1,16 @@
 // Messages of a run's events, with instants on the caller's clock.
-#include "logbook.hpp"
-
 #include <cstdio>
 
+#include "events.hpp"
 #include "law.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
 
 // An instant for messages: it is not found more exactly than to a nanosecond.
-double instant_of(const Setup& setup, double t) {
-  const double time = setup.start_time + t;
+double instant_of(const Wheel& wheel, double t) {
+  const double time = wheel.demand.start_time + t;
   return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
 }
 
@@ -19,12 +19,10 @@ double instant_of(const Setup& setup, double t) {
 Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
   const EventRow& row = row_of(event);
-  const WheelFriction before = run.in_force.scene.friction;
-  const bool slid = run.in_force.slides();
-  const Consequence consequence = row.follow(wheel.setup, event, run.t, run.y, run.in_force);
+  const InForce before = run.in_force;
+  const Consequence consequence = pass(row, wheel.setup, run.t, run.y, run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) count_event(wheel, event, run.t);
-  log_transition(wheel, before);
-  log_contact(wheel, slid, event != Event::slip_ends);
+  log_changes(wheel, before, event);
   return consequence;
 }
 
@@ -32,54 +30,52 @@ void count_event(Wheel& wheel, Event event, double t) {
   Tally& tally = wheel.run.tallies[static_cast<int>(event)];
   tally.last = t;
   if (tally.count++ >= logged_one_by_one) return;
-  wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel.setup, t), row_of(event).observed);
+  wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel, t), row_of(event).observed);
 }
 
-// A change to another law is not a transition.
-void log_transition(Wheel& wheel, const WheelFriction& before) {
-  const WheelFriction& friction = wheel.run.in_force.scene.friction;
-  const auto is_exact = [](WheelFrictionKind law) { return law == WHEEL_ROLLING || law == WHEEL_HELD; };
-  if (!is_exact(before.kind) || !is_exact(friction.kind) || !differ(before, friction)) return;
-  ++wheel.run.transitions;
-  const double instant = instant_of(wheel.setup, wheel.run.t);
-  const char* const change = before.kind == WHEEL_HELD ? "release" : "reversal";
-  if (friction.kind == WHEEL_HELD)
-    wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
-  else
-    wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant, change,
-                       friction.sigma > 0 ? "positive" : "negative");
-}
-
-void log_contact(Wheel& wheel, bool slid, bool goes_on) {
-  const bool slides = wheel.run.in_force.slides();
-  if (slides == slid && (goes_on || !slides)) return;
-  ++wheel.run.transitions;
-  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", instant_of(wheel.setup, wheel.run.t),
+void log_changes(Wheel& wheel, const InForce& before, Event by) {
+  Run& run = wheel.run;
+  const double instant = instant_of(wheel, run.t);
+  const WheelFriction &old = before.scene.friction, &law = run.in_force.scene.friction;
+  const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
+  if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
+    ++run.transitions;
+    if (law.kind == WHEEL_HELD)
+      wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+    else
+      wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant,
+                         old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
+  }
+  const bool slid = before.slides(), slides = run.in_force.slides();
+  if (slides == slid && !(slides && by == Event::slip_ends)) return;
+  ++run.transitions;
+  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", instant,
                      !slides ? "stops sliding"
                      : slid  ? "slides in another direction"
                              : "starts to slide");
 }
 
-void warn_of_grip(Wheel& wheel, double t, const double* y) {
+void look_at_grip(Wheel& wheel, double t) {
   constexpr double looks = 16, dry_road = 1;
   const Setup& setup = wheel.setup;
-  const WheelScene scene = wheel.run.in_force.scene_at(t);
-  WheelDynamics dynamics;
-  setup.formulation->dynamics(&scene, y, &dynamics);
-  const double mu = wheel_required_friction(dynamics.lambda);
+  const InForce& now = wheel.run.in_force;
+  if (t < wheel.run.grip_due || is_limited(setup, now.road) || !now.inputs.loaded) return;
+  double y[WHEEL_MAX_STATES];
+  wheel.solver.read(t, y);
+  const double mu = wheel_required_friction(dynamics_of(setup, now.scene_at(t), y).lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
   wheel.run.grip_due = exceeds ? solver::never : t + setup.own_time / looks;
   if (exceeds)
     wheel.reporter.log(Topic::warning,
                        "t = %s s: mu_required = %s, more than a dry road gives; mu_max = 0 sets no limit.",
-                       instant_of(setup, t), Digits{mu, 3});
+                       instant_of(wheel, t), Digits{mu, 3});
 }
 
 void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y) {
   InForce now = wheel.run.in_force;
   now.scene = ahead;
   if (now.slides() && margin_of(row_of(Event::jams), wheel.setup, now, wheel.run.t, y) < 0)
-    wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", instant_of(wheel.setup, wheel.run.t),
+    wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", instant_of(wheel, wheel.run.t),
                        ending_of(now, Event::jams).text);
 }
 
@@ -94,29 +90,28 @@ void log_ending(Wheel& wheel, Event event) {
                        "The wheel started exactly upright: unless a load tipped it, rounding decided when and to which "
                        "side; guided = true keeps it upright.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
-                     ending_of(run.in_force, event).text, setup.start_time + run.t,
+                     ending_of(run.in_force, event).text, wheel.time(),
                      Digits{run.y[setup.formulation->tilt_index], 6});
   if (wheel.endings == logged_one_by_one)
-    wheel.reporter.log(Topic::discard, "%s ends were logged; further ones are not logged until a reset.",
-                       static_cast<double>(logged_one_by_one));
+    wheel.reporter.log(Topic::discard, "%lld ends were logged; further ones are not logged until a reset.",
+                       logged_one_by_one);
 }
 
 void log_summaries(const Wheel& wheel) {
   for (const EventRow& row : event_rows) {
     const Tally& tally = wheel.run.tallies[static_cast<int>(row.event)];
     if (row.observed && tally.count > logged_one_by_one)
-      wheel.reporter.log(Topic::warning, "%s times, of which the first %s were logged, last at t = %s s: %s.",
-                         static_cast<double>(tally.count), static_cast<double>(logged_one_by_one),
-                         instant_of(wheel.setup, tally.last), row.observed);
+      wheel.reporter.log(Topic::warning, "%lld times, of which the first %lld were logged, last at t = %s s: %s.",
+                         tally.count, logged_one_by_one, instant_of(wheel, tally.last), row.observed);
   }
 }
 
 Ending ending_of(const InForce& now, Event event) {
   Ending ending;
+  NumberText limit;
   const EventRow& row = row_of(event);
-  const NumberText limit(Digits{row.limit ? row.limit(now) : 0});
   std::snprintf(ending.text, sizeof ending.text, "%s%s%s", row.ending, row.limit ? " = " : "",
-                row.limit ? limit.text : "");
+                row.limit ? limit.of({row.limit(now)}) : "");
   return ending;
 }
 

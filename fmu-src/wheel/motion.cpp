@@ -1,15 +1,20 @@
 // How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
-// stages.
-#include "motion.hpp"
-
+// stages. Times in s on the own clock.
+//
+//   stage           writes, besides the solution
+//   apply_demand    run: in_force, phase (an orbit is left), last_change, transitions; demand.changed
+//   set_in_motion   run: phase, counted
+//   proceed         run: t, y, in_force, tallies, transitions, at events that do not end the run
+//   arrive          run: t, tallies; demand: inputs and changed, where an input varies
+//   end             run: t, y, phase, ended_by, counted
+//   fail            run: as before the step, but for the phase; demand.changed: as before
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "contact.hpp"
+#include "events.hpp"
 #include "law.hpp"
-#include "logbook.hpp"
-#include "problem.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
@@ -25,21 +30,24 @@ constexpr long long work_per_event = 20;
 constexpr long long evaluations_per_step = 16, work_per_multibody_step = 8;
 
 bool is_known(const Wheel& w, double t) {
-  if (w.run.phase == Phase::stepping) return w.solution.solver.reaches(t);
-  return w.run.phase == Phase::unfolded && t <= w.solution.orbit_until;
+  if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
+  return w.run.phase == Phase::unfolded && t <= w.orbit_until;
 }
 
 // Whether what was set since the last step differs from what is in force.
 bool has_changed(const Wheel& w) {
   const InForce& now = w.run.in_force;
   const double t = w.run.t;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(w.setup.start_time) + std::fabs(t));
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(w.demand.start_time) + std::fabs(t));
   return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
-// Starts the solver at the present instant, from nothing or, again, where it goes on counting.
-Outcome start_solver(Wheel& w, bool again) {
-  solver::Solver& solver = w.solution.solver;
+// From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
+// before, anew, and goes on counting.
+Outcome start_solver(Wheel& w) {
+  solver::Solver& solver = w.solver;
+  const bool again = w.run.phase == Phase::stepping;
+  w.run.phase = Phase::stepping;
   const solver::Problem problem = problem_of(w);
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
@@ -47,26 +55,23 @@ Outcome start_solver(Wheel& w, bool again) {
   return done ? Outcome::stepped : Outcome::failed;
 }
 
-// Stage 1: what was set since the last step takes effect.
-Outcome take_demand(Wheel& w) {
+// Stage 1: what was set since the last step is in force.
+Outcome apply_demand(Wheel& w) {
   Run& run = w.run;
   const bool changed = w.demand.changed && has_changed(w);
   w.demand.changed = false;
   if (!changed) return Outcome::stepped;
-  const WheelFriction before = run.in_force.scene.friction;
-  const bool slid = run.in_force.slides();
+  const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
-  put_in_force(w.setup, w.demand, run.t, run.y, run.in_force);
-  log_transition(w, before);
-  log_contact(w, slid, true);
+  apply(w.setup, w.demand, run.t, run.y, run.in_force);
+  log_changes(w, before);
   if (run.phase == Phase::at_start) return Outcome::stepped;
   const double interval = run.t - run.last_change;
   run.last_change = run.t;
-  const bool again = run.phase == Phase::stepping;
-  if (!again) ++run.counted.restarts;
-  run.phase = Phase::stepping;
-  const Outcome outcome = start_solver(w, again);
-  if (again) w.solution.solver.limit_first_step(interval);
+  const bool unfolded = run.phase == Phase::unfolded;
+  if (unfolded) ++run.counted.restarts;
+  const Outcome outcome = start_solver(w);
+  if (!unfolded) w.solver.limit_first_step(interval);
   return outcome;
 }
 
@@ -78,65 +83,58 @@ Shape shape_of(const Demand& demand) {
   return shape;
 }
 
-// Whether the motion is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same shape.
-// False: the solver has to step through the motion.
+// Whether the motion repeats and is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same
+// shape. False: the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
-  orbit::Orbit& orbit = w.solution.orbit;
+  const InForce& now = w.run.in_force;
+  const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
+  if (!w.setup.unfolds || acted_on || now.slides()) return false;
+  orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
   const solver::Problem problem = problem_of(w);
-  if (w.solution.orbit_shape != asked) {
+  if (w.orbit_shape != asked) {
     const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    const auto result = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solution.solver);
+    const auto result = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solver);
     w.run.in_force = at_start;
-    w.solution.orbit_shape = result == orbit::Orbit::Result::refused ? Shape() : asked;
+    w.orbit_shape = result == orbit::Orbit::Result::refused ? Shape() : asked;
   }
-  if (w.solution.orbit_shape != asked || !orbit.start_at(problem, w.setup.start)) return false;
+  if (w.orbit_shape != asked || !orbit.start_at(problem, w.setup.start)) return false;
   w.run.counted = orbit.counters();
   const bool ends = orbit.end_time() < solver::never;
-  w.solution.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
+  w.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
   return true;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
 Outcome set_in_motion(Wheel& w) {
-  const bool is_ready = w.run.phase == Phase::unfolded && w.solution.orbit_until != Solution::none;
+  const bool is_ready = w.run.phase == Phase::unfolded && w.orbit_until != no_orbit;
   if (w.run.phase == Phase::stepping || is_ready) return Outcome::stepped;
-  const bool unfolds = is_unfoldable(w.setup, w.run.in_force) && enter_orbit(w);
-  w.run.phase = unfolds ? Phase::unfolded : Phase::stepping;
-  return unfolds ? Outcome::stepped : start_solver(w, false);
+  if (!enter_orbit(w)) return start_solver(w);
+  w.run.phase = Phase::unfolded;
+  return Outcome::stepped;
 }
 
 // Counts and logs what is observed on the orbit up to t.
 void observe_orbit(Wheel& w, double t) {
-  const orbit::Orbit& orbit = w.solution.orbit;
-  auto& tallies = w.run.tallies;
-  const auto next_of = [&](int event) {
-    const long long next = tallies[event].count, falls = orbit.recurrence(event).falls_until(t);
-    return next < std::min(falls, logged_one_by_one) ? orbit.recurrence(event).fall(next) : solver::never;
-  };
-  for (;;) {  // in the order of time
-    int first = 0;
-    for (int event = 1; event < event_count; ++event)
-      if (next_of(event) < next_of(first)) first = event;
-    const double instant = next_of(first);
-    if (instant == solver::never) break;
-    count_event(w, static_cast<Event>(first), instant);
-  }
-  for (int event = 0; event < event_count; ++event) {
-    const long long falls = orbit.recurrence(event).falls_until(t);
-    if (falls > tallies[event].count) tallies[event] = {falls, orbit.recurrence(event).fall(falls - 1)};
+  for (const EventRow& row : event_rows) {
+    const int event = static_cast<int>(row.event);
+    const orbit::Recurrence& recurrence = w.orbit.recurrence(event);
+    Tally& tally = w.run.tallies[event];
+    const long long falls = recurrence.falls_until(t);
+    while (tally.count < std::min(falls, logged_one_by_one)) count_event(w, row.event, recurrence.fall(tally.count));
+    if (falls > tally.count) tally = {falls, recurrence.fall(falls - 1)};
   }
 }
 
 void move_to(Wheel& w, double t) {
-  if (w.run.phase == Phase::unfolded && w.solution.orbit.recurs()) observe_orbit(w, t);
+  if (w.run.phase == Phase::unfolded && w.orbit.recurs()) observe_orbit(w, t);
   w.run.t = t;
 }
 
 // Latest end of the next step on the way to t, s.
 double stop_of(const Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
-  const solver::Solver& solver = w.solution.solver;
+  const solver::Solver& solver = w.solver;
   // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
   // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
   double stop = inputs.varies && solver.method() == solver::Method::runge_kutta ? t : solver::never;
@@ -148,22 +146,13 @@ double stop_of(const Wheel& w, double t) {
   return stop;
 }
 
-// Of a loaded wheel on a road without a limit.
-void look_at_grip(Wheel& w, double t) {
-  const Inputs& inputs = w.run.in_force.inputs;
-  if (t < w.run.grip_due || is_limited(w.setup, w.run.in_force.road) || !(inputs.loaded || inputs.braked)) return;
-  double y[WHEEL_MAX_STATES];
-  w.solution.solver.read(t, y);
-  warn_of_grip(w, t, y);
-}
-
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(Wheel& w, double t) {
-  solver::Solver& solver = w.solution.solver;
+  solver::Solver& solver = w.solver;
   const long long work_per_step = w.setup.formulation->states == WHEEL_MULTIBODY_STATES ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
-      w.solution.failure = "one call may take no more internal steps; use shorter communication steps";
+      w.failure = "one call may take no more internal steps; use shorter communication steps";
       return Outcome::failed;
     }
     const long long before = solver.counters().rhs;
@@ -179,7 +168,7 @@ Outcome step_to(Wheel& w, double t) {
     if (ends_run(row_of(event), w.setup)) return outcome;
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
-    else if (start_solver(w, true) == Outcome::failed)
+    else if (start_solver(w) == Outcome::failed)
       return Outcome::failed;
   }
   return Outcome::stepped;
@@ -188,9 +177,9 @@ Outcome step_to(Wheel& w, double t) {
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
 Outcome proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
-  if (t <= w.solution.orbit_until) return Outcome::stepped;
-  if (w.solution.orbit_until == w.solution.orbit.end_time()) return Outcome::event;
-  w.solution.failure = "psi or phi would turn so far that the angle has too few digits";
+  if (t <= w.orbit_until) return Outcome::stepped;
+  if (w.orbit_until == w.orbit.end_time()) return Outcome::event;
+  w.failure = "psi or phi would turn so far that the angle has too few digits";
   return Outcome::failed;
 }
 
@@ -208,16 +197,15 @@ void arrive(Wheel& w, double t) {
 // The event of the solution that ends the run.
 void end(Wheel& w) {
   const bool unfolded = w.run.phase == Phase::unfolded;
-  if (unfolded) move_to(w, w.solution.orbit.end_time());
-  end_run(w, static_cast<Event>(unfolded ? w.solution.orbit.event() : w.solution.solver.event()));
+  if (unfolded) move_to(w, w.orbit.end_time());
+  end_run(w, static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event()));
 }
 
 // The state is that before the step, and stays so.
 void fail(Wheel& w, const Run& before) {
-  if (w.run.phase == Phase::stepping) move_to(w, w.solution.solver.known_until());
-  w.reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.",
-                 w.setup.start_time + w.run.t, Digits{state_now(w)[w.setup.formulation->spin_index], 4},
-                 w.solution.failure ? w.solution.failure : w.solution.solver.failure());
+  if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
+  w.reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", w.time(),
+                 Digits{state_now(w)[w.setup.formulation->spin_index], 4}, w.failure ? w.failure : w.solver.failure());
   w.run = before;
   w.run.phase = Phase::broken;
 }
@@ -225,10 +213,10 @@ void fail(Wheel& w, const Run& before) {
 Outcome advance_by_stages(Wheel& w, double t) {
   state_now(w);
   Run before = w.run;
-  before.counted = counters_of(w.run, w.solution.solver);
+  before.counted = counters_of(w.run, w.solver);
   const bool changed = w.demand.changed, moves = t > w.run.t;
-  w.solution.failure = nullptr;
-  Outcome outcome = take_demand(w);
+  w.failure = nullptr;
+  Outcome outcome = apply_demand(w);
   if (outcome == Outcome::stepped && moves) outcome = set_in_motion(w);
   if (outcome == Outcome::stepped && moves) outcome = proceed(w, t);
   if (outcome == Outcome::stepped) arrive(w, t);
@@ -246,19 +234,6 @@ Outcome advance(Wheel& w, double t) {
   if (w.demand.changed || !is_known(w, t)) return advance_by_stages(w, t);
   arrive(w, t);
   return Outcome::stepped;
-}
-
-void freeze(Wheel& w, Phase phase) {
-  state_now(w);
-  w.run.counted = counters_of(w.run, w.solution.solver);
-  w.run.phase = phase;
-}
-
-void end_run(Wheel& w, Event event) {
-  w.run.ended_by = event;
-  freeze(w, Phase::ended);
-  log_summaries(w);
-  log_ending(w, event);
 }
 
 }  // namespace wheel

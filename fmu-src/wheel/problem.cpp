@@ -1,9 +1,10 @@
 // What the solver asks: right-hand side, error weights, watched functions.
-#include "problem.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "events.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
@@ -105,7 +106,7 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
   if (ends_run(row, wheel.setup)) return Consequence::ends;
   double state[WHEEL_MAX_STATES] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
-  return row.follow(wheel.setup, row.event, t, state, wheel.run.in_force);
+  return pass(row, wheel.setup, t, state, wheel.run.in_force);
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
@@ -114,11 +115,6 @@ solver::Method method_of(const Setup& setup, const InForce& now) {
   if (now.slides()) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
-}
-
-bool is_unfoldable(const Setup& setup, const InForce& in_force) {
-  return setup.unfolds && in_force.scene.friction.kind == WHEEL_FRICTIONLESS && !in_force.inputs.loaded &&
-         !in_force.slides() && in_force.road.slope == 0;
 }
 
 }  // namespace wheel

@@ -15,31 +15,41 @@ struct Digits {
 
 // A number as text; as many digits as it needs are the fewest of 15 to 17 that read back as the same double. It has a
 // point whatever the host's locale is.
-struct NumberText {
-  explicit NumberText(Digits number) {
+class NumberText {
+ public:
+  const char* of(Digits number) {
     int digits = number.digits > 0 ? number.digits : 15;
     // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
-    do std::snprintf(text, sizeof text, "%.*g", digits, number.x);
-    while (number.digits == 0 && std::strtod(text, nullptr) != number.x && ++digits <= 17);
-    if (char* comma = std::strchr(text, ',')) *comma = '.';
+    do std::snprintf(text_, sizeof text_, "%.*g", digits, number.x);
+    while (number.digits == 0 && std::strtod(text_, nullptr) != number.x && ++digits <= 17);
+    if (char* comma = std::strchr(text_, ',')) *comma = '.';
+    return text_;
   }
-  char text[32];
+
+ private:
+  char text_[32];
 };
 
 enum class Topic { event, warning, error, discard };
 
+// This one takes no message.
 struct Reporter {
   static constexpr int longest = 512;  // message, with the zero at its end
 
-  const void* owner = nullptr;
-  bool (*listens)(const void* owner, Topic topic) = nullptr;  // null: nobody does
-  void (*take)(const void* owner, Topic topic, const char* message) = nullptr;
+  Reporter() = default;
+  Reporter(const Reporter&) = delete;  // it would take no message any more
+
+  virtual bool listens(Topic) const { return false; }
+  virtual void take(Topic, const char*) const {}
 
   // Printf-like, but a double and Digits are written as %s: times with all digits, so that a caller can go to exactly
   // that instant. Nothing is formatted where nobody listens.
   template <class... Parts>
   void log(Topic topic, const char* format, Parts... parts) const {
-    if (listens && listens(owner, topic)) print(topic, format, plain(written(parts))...);
+    if (!listens(topic)) return;
+    char message[longest];
+    std::snprintf(message, sizeof message, format, plain(parts)...);
+    take(topic, message);
   }
   // Whether all is well; if not, the error is logged.
   template <class... Parts>
@@ -49,18 +59,13 @@ struct Reporter {
   }
 
  private:
-  static NumberText written(double x) { return NumberText(Digits{x}); }
-  static NumberText written(Digits number) { return NumberText(number); }
-  template <class Part>
-  static Part written(Part part) {
-    return part;
-  }
-  static const char* plain(const NumberText& number) { return number.text; }
+  // The text lives as long as the call that prints it.
+  static const char* plain(Digits number, NumberText&& text = {}) { return text.of(number); }
+  static const char* plain(double x, NumberText&& text = {}) { return text.of({x}); }
   template <class Part>
   static Part plain(Part part) {
     return part;
   }
-  void print(Topic topic, const char* format, ...) const;
 };
 
 }  // namespace wheel

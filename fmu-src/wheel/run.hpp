@@ -34,9 +34,8 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 // at the same instant the later one counts.
 enum class Event : int {
   none,
-  stiffens,         // a regularized law becomes so steep that it is solved by its layer
   sticks_in_layer,  // omega_z begins to stick in the layer of a stiff regularized law
-  crosses_layer,    // omega_z enters or leaves that layer
+  changes_layer,    // omega_z enters or leaves that layer, or the law becomes so steep that it has one
   spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
   lost_grip,        // the wheel needs a friction coefficient above mu_max
   slip_ends,        // the slip falls to zero
@@ -67,14 +66,8 @@ inline Road road_asked(const Demand& demand) {
 struct InForce {
   Road road = {};
   // Its wheel and mu_slide follow from `road`; its load is that at the origin of the inputs; `ground` follows from
-  // `below`, `guided` from the setup.
-  WheelScene scene = {.wheel = {},
-                      .friction = {},
-                      .load = {},
-                      .ground = WHEEL_GROUND_PRESSES,
-                      .contact = WHEEL_GRIPS,
-                      .mu_slide = 0,
-                      .guided = 0};
+  // `below`, `guided` from the setup. Without a law until one is decided; the wheel rolls.
+  WheelScene scene = {};
   Inputs inputs;
   Layer layer = Layer::none;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since

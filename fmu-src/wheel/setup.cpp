@@ -48,96 +48,63 @@ void set_error_scales(Setup& setup) {
   const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
   std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
-  const bool by_paper = f->states == WHEEL_MULTIBODY_STATES, exchanged = setup.kind == Kind::model_exchange;
-  std::copy_n(by_paper ? multibody : exchanged ? euler : reduced, f->states, setup.slow_scales);
+  const bool by_paper = f->states == WHEEL_MULTIBODY_STATES;
+  std::copy_n(by_paper ? multibody : setup.exchanged ? euler : reduced, f->states, setup.slow_scales);
   if (setup.sliding && !by_paper) setup.slow_scales[setup.sliding->slip_index] = speed;
-}
-
-bool is_positive(unsigned v) {
-  using namespace variable;
-  return v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
 }
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
   using namespace variable;
   const Row& row = row_of(v);
-  const char* fault = nullptr;
-  double limit = row.min;
-  if (!std::isfinite(value)) {
-    fault = "%s = %s: a finite number is needed.";
-  } else if (v == theta_start && !(std::sin(value) > flat_angle && value > 0 && value < row.max)) {
-    fault = "%s = %s rad: the wheel must stand above the ground, 0 < theta < %s.";
-    limit = row.max;
-  } else if ((v == psi_start || v == phi_start) && std::fabs(value) > largest_angle) {
-    fault = "%s = %s rad: beyond %s rad an angle has too few digits.";
-    limit = largest_angle;
-  } else if (is_positive(v) ? value <= row.min : value < row.min) {
-    fault = is_positive(v) ? "%s = %s: it must be greater than %s." : "%s = %s: it must be at least %s.";
-  } else if (is_above(v, value)) {
-    fault = v == slope ? "%s = %s rad: it must be less than %s." : "%s = %s: it must be at most %s.";
-    limit = row.max;
-  }
-  return reporter.check(!fault, fault, row.name, Digits{value, 9}, Digits{limit, 6});
-}
-
-// Only the reduced equations are offered to another solver. The number may be any: a restored state is judged here too.
-bool check_kind(const Reporter& reporter, const Demand& demand) {
-  const bool offered = demand.parameters[variable::formulation] != int{multibody_formulation};
-  return reporter.check(offered || demand.kind == Kind::co_simulation,
-                        "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
-}
-
-// Its slip would be two more states than another solver is given.
-bool check_sliding(const Reporter& reporter, const Demand& demand, bool at_start) {
-  const double* v = demand.parameters;
-  const double mu_max = v[variable::mu_max], mu_slide = v[variable::mu_slide];
-  const double slip_x = v[variable::slip_x_start], slip_y = v[variable::slip_y_start];
-  const bool slips = std::fabs(slip_x) + std::fabs(slip_y) > 0;
-  bool sound =
-      reporter.check(!at_start || !(mu_slide > mu_max), "mu_slide = %s: mu_max must be at least as large, and is %s.",
-                     Digits{mu_slide, 9}, Digits{mu_max, 9});
-  sound &= reporter.check(!slips || demand.slides,
-                          "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", Digits{slip_x, 9},
-                          Digits{slip_y, 9});
-  sound &= reporter.check(!demand.slides || demand.kind == Kind::co_simulation,
-                          "mu_slide = %s: model exchange has no states for a slip and needs 0.", Digits{mu_slide, 9});
-  return sound;
-}
-
-// No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
-bool check_inertia(const Reporter& reporter, const double* v) {
-  constexpr double rounding = 1e-12;
-  const double J_x = v[variable::J_x], J_y = v[variable::J_y], J_z = v[variable::J_z], sum = J_x + J_y + J_z;
-  const double largest = std::fmax(J_x, std::fmax(J_y, J_z));
-  return reporter.check(largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum),
-                        "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.", Digits{J_x, 9},
-                        Digits{J_y, 9}, Digits{J_z, 9});
-}
-
-bool check_carrier(const Reporter& reporter, const double* v) {
-  const double psi_dot = v[variable::psi_dot_start], theta_dot = v[variable::theta_dot_start];
-  return reporter.check(v[variable::guided] == 0 || (psi_dot == 0 && theta_dot == 0),
-                        "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both.",
-                        Digits{psi_dot, 9}, Digits{theta_dot, 9});
+  const Digits shown = {value, 9};
+  const Limit passed = limit_passed(v, value);
+  if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
+  if (v == theta_start)
+    return reporter.check(std::sin(value) > flat_angle && value > 0 && value < row.max,
+                          "%s = %s rad: the wheel must stand above the ground, 0 < theta < %s.", row.name, shown,
+                          Digits{row.max, 6});
+  if (v == psi_start || v == phi_start)
+    return reporter.check(std::fabs(value) <= largest_angle, "%s = %s rad: beyond %s rad an angle has too few digits.",
+                          row.name, shown, Digits{largest_angle, 6});
+  return reporter.check(!passed.message, passed.message, row.name, shown, Digits{passed.value, 6});
 }
 
 // Those of the kind of run and the formulation, rolling and sliding.
 void choose_equations(Setup& setup, const Demand& demand) {
-  const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation,
-             exchanged = setup.kind == Kind::model_exchange;
-  setup.formulation = exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
+  const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation;
+  setup.formulation = setup.exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
   if (demand.slides) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
 }  // namespace
 
 bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
+  using namespace variable;
+  const double* v = demand.parameters;
   bool sound = true;
-  for (unsigned v = 0; v < stored_count; ++v) sound &= check_value(reporter, v, demand.value(v));
-  sound &= check_inertia(reporter, demand.parameters);
-  sound &= check_kind(reporter, demand);
-  sound &= check_carrier(reporter, demand.parameters);
-  sound &= check_sliding(reporter, demand, at_start);
+  for (unsigned k = 0; k < stored_count; ++k) sound &= check_value(reporter, k, demand.value(k));
+  const auto require = [&](bool holds, const char* message, auto... parameters) {
+    sound &= reporter.check(holds, message, Digits{v[parameters], 9}...);
+  };
+  // No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
+  constexpr double rounding = 1e-12;
+  const double sum = v[J_x] + v[J_y] + v[J_z], largest = std::fmax(v[J_x], std::fmax(v[J_y], v[J_z]));
+  require(largest <= (sum - largest) * (1 + rounding) || !std::isfinite(sum),
+          "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.", J_x, J_y, J_z);
+  // Another solver is offered the reduced equations alone, and has no states for a slip. The number may be any: a
+  // restored state is judged here too.
+  const bool exchanged = demand.kind == Kind::model_exchange;
+  require(!exchanged || v[formulation] != int{multibody_formulation},
+          "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
+  require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
+          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both.", psi_dot_start,
+          theta_dot_start);
+  require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
+          mu_slide, mu_max);
+  require(demand.slides || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),
+          "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
+  require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
+          mu_slide);
   return sound;
 }
 
@@ -145,9 +112,7 @@ Setup setup_of(const Demand& demand) {
   using namespace variable;
   const double* v = demand.parameters;
   Setup setup = {};
-  setup.kind = demand.kind;
-  const bool exchanged = setup.kind == Kind::model_exchange;
-  setup.start_time = demand.start_time;
+  setup.exchanged = demand.kind == Kind::model_exchange;
   setup.guided = v[guided] != 0;
   choose_equations(setup, demand);
   // clang-format off
@@ -161,10 +126,11 @@ Setup setup_of(const Demand& demand) {
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
-  setup.psi = {v[psi_start], exchanged ? v[psi_start] : wheel_less_turns(v[psi_start])};
-  setup.phi = {v[phi_start], exchanged ? v[phi_start] : wheel_less_turns(v[phi_start])};
-  setup.X_O = {v[X_O_start], exchanged ? v[X_O_start] : 0};
-  setup.Y_O = {v[Y_O_start], exchanged ? v[Y_O_start] : 0};
+  const auto origin = [&](double start, double own) { return Origin{start, setup.exchanged ? start : own}; };
+  setup.psi = origin(v[psi_start], wheel_less_turns(v[psi_start]));
+  setup.phi = origin(v[phi_start], wheel_less_turns(v[phi_start]));
+  setup.X_O = origin(v[X_O_start], 0);
+  setup.Y_O = origin(v[Y_O_start], 0);
   const WheelMotion motion = {setup.psi.own,    v[theta_start], setup.phi.own, v[psi_dot_start], v[theta_dot_start],
                               v[phi_dot_start], setup.X_O.own,  setup.Y_O.own, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;

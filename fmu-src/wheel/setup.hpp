@@ -47,8 +47,7 @@ struct Origin {
 };
 
 struct Setup {
-  Kind kind;
-  double start_time;                    // s
+  bool exchanged;                       // model exchange: another solver moves the states
   const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
   WheelParameters wheel;                // on a level road and with s = 0: the road in force is part of the run
@@ -77,6 +76,21 @@ Setup setup_of(const Demand& demand);
 // The equations of the contact's mode.
 inline const WheelFormulation& formulation_of(const Setup& setup, const WheelScene& scene) {
   return scene.contact == WHEEL_SLIDES && setup.sliding ? *setup.sliding : *setup.formulation;
+}
+
+struct Rates {
+  double N, y_dot[WHEEL_MAX_STATES];
+};
+inline Rates rates_of(const Setup& setup, const WheelScene& scene, const double* y) {
+  Rates rates;
+  rates.N = formulation_of(setup, scene).derivative(&scene, y, rates.y_dot);
+  return rates;
+}
+
+inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, const double* y) {
+  WheelDynamics dynamics;
+  formulation_of(setup, scene).dynamics(&scene, y, &dynamics);
+  return dynamics;
 }
 
 // The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the

@@ -1,16 +1,13 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
 // rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force), and a rate
 // that another variable has is read there (Row::read_rate).
-#include "slopes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
-#include "contact.hpp"
-#include "exchange.hpp"
 #include "law.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
@@ -35,27 +32,26 @@ struct Pass {
 
   double of(unsigned variable) const { return slope[variable - stored_count]; }
 
-  Numbers sample(Reading& reading) const {
+  Numbers sample(Reading reading) const {
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)
       if (asked[k]) numbers[k] = row_of(stored_count + k).read(reading);
-    const Force force = reading.force();
+    const Force force = force_of(reading);
     std::memcpy(&numbers[computed], &force, sizeof force);
     return numbers;
   }
 
-  // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `read_at` gives
-  // the reading at a place, null where there is none. tau_rate: the part of the rate of tau that it leaves out.
-  template <class ReadAt>
-  bool take(const Stencil& stencil, double x, double h, const ReadAt& read_at, double tau_rate = 0) {
-    Reading* reading = read_at(x);
-    if (!reading) return false;
-    const Numbers centre = sample(*reading);
+  // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `move_to` leads
+  // `now` to a place, if there is such a wheel. tau_rate: the part of the rate of tau that it leaves out.
+  template <class MoveTo>
+  bool take(const Stencil& stencil, double x, double h, const Reading& now, const MoveTo& move_to,
+            double tau_rate = 0) {
+    if (!move_to(x)) return false;
+    const Numbers centre = sample(now);
     slope = {};
     for (int k = 0; k < 4; ++k) {
-      reading = read_at(x + stencil.places[k] * h);
-      if (!reading) return false;
-      const Numbers at = sample(*reading);
+      if (!move_to(x + stencil.places[k] * h)) return false;
+      const Numbers at = sample(now);
       for (std::size_t i = 0; i < count; ++i) slope[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
     }
     slope[variable::tau - stored_count] += tau_rate;
@@ -77,73 +73,56 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
                      parameter == variable::slope_direction;  // the same after a whole turn
   const double set = w.demand.value(parameter), x = turns ? wheel_less_turns(set) : set, size = std::fabs(x);
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
-  Reading reading;
-  const auto read_at = [&](double near_x) -> Reading* {
+  Reading now;
+  const auto move_to = [&](double near_x) {
     w.demand.value(parameter) = near_x;
-    if (!prepare(w, Reporter())) return nullptr;
-    reading.set(present(w));
-    return &reading;
+    const bool exists = prepare(w, Reporter());
+    if (exists) now = reading_now(w);
+    return exists;
   };
   bool done = false;
   for (const double fraction : {1e-3, 1e-6, 1e-9})
-    for (const Stencil& stencil : stencils) done = done || pass.take(stencil, x, fraction * scale, read_at);
-  return read_at(set) && done;
-}
-
-// The same as it answers a change of one known: a brake that is not in use has the law that it would have in use. In
-// model exchange that law waits for an event.
-Present present_for(Wheel& w, unsigned known) {
-  Present now = present(w);
-  const bool brake = known == first_input + brake_input && w.demand.kind == Kind::co_simulation;
-  if (!brake || now.scene.friction.kind != WHEEL_FRICTIONLESS) return now;
-  double y[WHEEL_MAX_STATES];
-  std::copy_n(now.y, WHEEL_MAX_STATES, y);
-  InForce used = in_force_now(w, y);
-  used.inputs.braked = true;
-  decide_law(w.setup, w.run.t, now.y, used);
-  now.scene.friction = used.scene.friction;
-  return now;
+    for (const Stencil& stencil : stencils) done = done || pass.take(stencil, x, fraction * scale, now, move_to);
+  return move_to(set) && done;
 }
 
 // The ground as it is at this instant, by the sign of N.
-void keep_ground(Present& now) {
-  double y_dot[WHEEL_MAX_STATES];
-  const double N = formulation_of(*now.setup, now.scene).derivative(&now.scene, now.y, y_dot);
-  now.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+void keep_ground(Reading& now) {
+  now.scene.ground = rates_of(*now.setup, now.scene, now.y).N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
-// The law and the sign of N are kept. Steps are small parts of what each known turns on, those of a load of the whole
+// The law and the sign of N are kept. A brake that is not in use has the law that it would have in use; in model
+// exchange that law waits for an event. Steps are small parts of what each known turns on, those of a load of the whole
 // weight or of the load.
 bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const Setup& setup = w.setup;
   const WheelFormulation& f = *setup.formulation;
-  double y[WHEEL_MAX_STATES], scales[WHEEL_MAX_STATES];
-  Present now = present_for(w, known);
-  Reading reading;
+  Reading now = reading_now(w);
+  if (known == variable::M_brake && !setup.exchanged && now.scene.friction.kind == WHEEL_FRICTIONLESS) {
+    InForce used = in_force_now(w, now.y);
+    used.inputs.braked = true;
+    decide_law(setup, w.run.t, now.y, used);
+    now.scene.friction = used.scene.friction;
+  }
   keep_ground(now);
-  std::copy_n(now.y, WHEEL_MAX_STATES, y);
-  now.y = y;
-  scales_at(setup, 0, scales);
-  const bool exchanged = w.demand.kind == Kind::model_exchange;
-  if (exchanged)  // a small step must not vanish in the rounding of a large angle
+  if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
     for (const unsigned angle : {variable::psi, variable::phi})
-      y[state_index_of(angle)] = wheel_less_turns(y[state_index_of(angle)]);
-  const int state = exchanged ? state_index_of(known) : -1;
-  double& place = state >= 0 ? y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
+      now.y[state_index_of(angle)] = wheel_less_turns(now.y[state_index_of(angle)]);
+  const int state = setup.exchanged ? state_index_of(known) : -1;
+  double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
+  double scales[WHEEL_MAX_STATES];
+  scales_at(setup, 0, scales);
   double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
   if (state == f.tilt_index) h *= std::sin(place);
   if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
-  const bool begun = has_begun(w.phase()) ? w.run.in_force.slides() : setup.starts_sliding;
+  const bool begun = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
   const bool turns = now.scene.contact == WHEEL_SLIDES && !begun;  // the loads decide the direction of the slip
-  double reduced[WHEEL_MAX_STATES];
-  if (turns) setup.sliding->reduce(y, reduced);
-  const auto read_at = [&](double x) {
+  const auto move_to = [&](double x) {
     place = x;
-    if (turns) y[setup.sliding->slip_index + 1] = first_direction(now.scene, reduced);
-    reading.set(now);
-    return &reading;
+    if (turns) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
+    return true;
   };
-  return pass.take(stencils[0], place, 1e-3 * h, read_at);
+  return pass.take(stencils[0], place, 1e-3 * h, now, move_to);
 }
 
 // 1/s, how fast the wheel moves, of states of the reduced forms.
@@ -156,50 +135,45 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 // In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
 // its own rate can be large, and acts as a moment about the axle.
 void take_along_motion(Wheel& w, Pass& pass) {
-  Present now = present(w);
+  const Reading whole = reading_now(w);
   Setup setup = w.setup;
   setup.formulation = &wheel_reduced;
   if (setup.sliding) setup.sliding = &wheel_sliding;
-  double start[WHEEL_MAX_STATES], y[WHEEL_MAX_STATES], y_dot[WHEEL_MAX_STATES];
-  formulation_of(w.setup, now.scene).reduce(now.y, start);
+  Reading start = whole;
+  start.setup = &setup;
+  formulation_of(w.setup, whole.scene).reduce(whole.y, start.y);
   for (const int angle : {4, 5})  // a small step must not vanish in the rounding of a large angle
-    start[angle] = wheel_less_turns(start[angle]);
-  now.setup = &setup;
-  now.y = start;
-  keep_ground(now);
-  const WheelFormulation& formulation = formulation_of(setup, now.scene);
-  const double N = formulation.derivative(&now.scene, start, y_dot);
+    start.y[angle] = wheel_less_turns(start.y[angle]);
+  keep_ground(start);
+  const WheelFormulation& formulation = formulation_of(setup, start.scene);
+  const Rates rates = rates_of(setup, start.scene, start.y);
   WheelLoad rate = load_rate_of(w.demand.inputs);
-  WheelFriction& law = now.scene.friction;
+  WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
-    const double s = now.scene.ground == WHEEL_GROUND_PULLS ? 0 : now.scene.wheel.s;
-    const double steepness = std::cosh(start[formulation.spin_index] / law.omega_s);
-    const double kappa_dot = y_dot[formulation.spin_index] / law.omega_s / steepness / steepness;
-    tau_rate = -kappa_dot * (s * N + now.scene.load.brake);
+    const double s = start.scene.ground == WHEEL_GROUND_PULLS ? 0 : start.scene.wheel.s;
+    const double omega_z = start.y[formulation.spin_index], steepness = std::cosh(omega_z / law.omega_s);
+    const double kappa_dot = rates.y_dot[formulation.spin_index] / law.omega_s / steepness / steepness;
+    tau_rate = -kappa_dot * (s * rates.N + start.scene.load.brake);
     rate.M[2] += tau_rate;
-    law = {WHEEL_ROLLING, wheel_kappa(&law, start[formulation.spin_index]), 0};
+    law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};
   }
-  now.y = y;
-  const WheelLoad load = now.scene.load;
-  Reading reading;
-  const auto read_at = [&](double t) {
-    for (int i = 0; i < formulation.states; ++i) y[i] = start[i] + t * y_dot[i];
-    now.scene.load = load;
+  Reading now = start;
+  const auto move_to = [&](double t) {
+    for (int i = 0; i < formulation.states; ++i) now.y[i] = start.y[i] + t * rates.y_dot[i];
+    now.scene.load = start.scene.load;
     for (int i = 0; i < inputs_count; ++i) *load_entry(now.scene.load, i) += t * *load_entry(rate, i);
-    reading.set(now);
-    return &reading;
+    return true;
   };
-  const double pace = pace_of(start, y_dot, now.scene.contact == WHEEL_SLIDES);
-  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, read_at, tau_rate);
+  const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
+  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to, tau_rate);
 }
 
 }  // namespace
 
 void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
   Pass pass;
-  Reading reading;
-  reading.set(present(w));
+  Reading reading = reading_now(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k)
     missing |= pass.asked[outputs[k] - stored_count] = !row_of(outputs[k]).read_rate;
@@ -211,7 +185,7 @@ void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* ou
 }
 
 bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
-  w.reading.forget();
+  w.reading.reset();
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
   const bool of_slip =

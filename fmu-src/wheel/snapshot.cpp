@@ -1,13 +1,11 @@
 // Bytes may come from anywhere: whatever they are, reading them is harmless.
-#include "snapshot.hpp"
-
 #include <cstring>
 #include <string_view>
 
 #include "bytes.hpp"
 #include "events.hpp"
 #include "law.hpp"
-#include "problem.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
@@ -41,9 +39,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive.count(demand.slides, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);
-  archive.range(now.road.s, 0, archive.greatest);
-  archive.range(now.road.mu_max, 0, archive.greatest);
-  archive.range(now.road.mu_slide, 0, archive.greatest);
+  for (double* x : {&now.road.s, &now.road.mu_max, &now.road.mu_slide}) archive.range(*x, 0, archive.greatest);
   archive.range(now.road.slope, 0, upright);
   archive.number(now.road.slope_direction);
   archive.count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
@@ -75,15 +71,14 @@ bool complete(const Demand& demand, Setup& setup, Run& run) {
   setup = setup_of(demand);
   run.y_time = run.t;
   InForce& now = run.in_force;
-  let_act(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
+  apply_loads(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
-  now.set_below(Event::lost_contact, now.pulls());
   return setup.sliding || !now.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {
   visit(archive, w.demand, w.run);
-  if (w.run.phase == Phase::stepping) w.solution.solver.save_history(archive);
+  if (w.run.phase == Phase::stepping) w.solver.save_history(archive);
 }
 
 }  // namespace
@@ -125,9 +120,8 @@ const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
   w.demand = demand;
   w.setup = setup;
   w.run = run;
-  w.solution.orbit_until = Solution::none;
-  if (!stepping || w.solution.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive))
-    return nullptr;
+  w.orbit_until = no_orbit;
+  if (!stepping || w.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive)) return nullptr;
   w.run.phase = Phase::broken;
   return forged;
 }

@@ -1,8 +1,9 @@
-// How each calculated variable is read, and its rate of change: what modelDescription.xml cannot say. A variable of the
-// description without a reader here does not compile, nor does a reader without its variable.
+// How each calculated variable is read, its rate of change and its limits: what modelDescription.xml cannot say. A
+// variable of the description without a reader here does not compile, nor does a reader without its variable.
 #include "variables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "reading.hpp"
@@ -14,6 +15,49 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 // Largest input, N or N m: far above any real load. Products of larger loads with the parameters would overflow.
 constexpr double strongest = 1e300;
 
+// J, of the whole X_O and Y_O.
+double energy(Reading& now) {
+  WheelKinematics whole = now.kinematics();
+  whole.X_O = now.setup->X_O.whole(whole.X_O);
+  whole.Y_O = now.setup->Y_O.whole(whole.Y_O);
+  return wheel_energy(&now.scene.wheel, &whole);
+}
+
+// N, the ground's: along e1 (0) or across it (1).
+double horizontal_force(Reading& now, int axis) {
+  double force[2];
+  wheel_horizontal_force(&now.kinematics(), now.dynamics().lambda, force);
+  return force[axis];
+}
+
+// N m, the hub carrier's on the wheel: about e1 (0) or e2 (1).
+double guide_moment(Reading& now, int axis) {
+  double moment[2] = {};
+  const WheelScene& scene = now.scene;
+  if (now.scene.guided)
+    wheel_guide_moment(&scene.wheel, &now.kinematics(), now.dynamics().lambda, scene.load.M, moment);
+  return moment[axis];
+}
+
+// m/s, of the wheel's material point at the contact: along e1 (0) or across it (1).
+double slip(const Reading& now, int axis) {
+  if (now.scene.contact == WHEEL_GRIPS) return 0;
+  const double* const u = now.y + formulation_of(*now.setup, now.scene).slip_index;
+  return u[0] * (axis == 0 ? std::cos(u[1]) : std::sin(u[1]));
+}
+
+double brake_moment(Reading& now) {
+  const WheelAxleMoment axle = force_of(now).axle;
+  return wheel_brake_moment(&axle);
+}
+
+int friction_mode(Reading& now) {
+  const WheelFriction& friction = now.scene.friction;
+  if (friction.kind == WHEEL_HELD) return 0;
+  const double side = friction.kind == WHEEL_ROLLING ? friction.sigma : now.kinematics().omega_z;
+  return (side > 0) - (side < 0);
+}
+
 struct Access {
   variable::Reference variable;
   double (*read)(Reading&);
@@ -24,12 +68,12 @@ struct Access {
 #define AT(expression) [](Reading& now) -> double { return expression; }
 
 constexpr Access readers[] = {
-    {variable::X_O, AT(now.setup().X_O.whole(now.kinematics().X_O)), AT(now.kinematics().X_O_dot)},
-    {variable::Y_O, AT(now.setup().Y_O.whole(now.kinematics().Y_O)), AT(now.kinematics().Y_O_dot)},
+    {variable::X_O, AT(now.setup->X_O.whole(now.kinematics().X_O)), AT(now.kinematics().X_O_dot)},
+    {variable::Y_O, AT(now.setup->Y_O.whole(now.kinematics().Y_O)), AT(now.kinematics().Y_O_dot)},
     {variable::Z_O, AT(now.kinematics().Z_O), AT(now.kinematics().Z_O_dot)},
-    {variable::psi, AT(now.setup().psi.whole(now.kinematics().psi)), AT(now.kinematics().psi_dot)},
+    {variable::psi, AT(now.setup->psi.whole(now.kinematics().psi)), AT(now.kinematics().psi_dot)},
     {variable::theta, AT(now.kinematics().theta), AT(now.kinematics().theta_dot)},
-    {variable::phi, AT(now.setup().phi.whole(now.kinematics().phi)), AT(now.kinematics().phi_dot)},
+    {variable::phi, AT(now.setup->phi.whole(now.kinematics().phi)), AT(now.kinematics().phi_dot)},
     {variable::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
     {variable::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
     {variable::Z_O_dot, AT(now.kinematics().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
@@ -40,32 +84,32 @@ constexpr Access readers[] = {
     {variable::lambda_1, AT(now.dynamics().lambda[0])},
     {variable::lambda_2, AT(now.dynamics().lambda[1])},
     {variable::lambda_3, AT(now.dynamics().lambda[2])},
-    {variable::X_C, AT(now.setup().X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
-    {variable::Y_C, AT(now.setup().Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
-    {variable::lambda_x, AT(now.horizontal_force(0))},
-    {variable::lambda_y, AT(now.horizontal_force(1))},
+    {variable::X_C, AT(now.setup->X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
+    {variable::Y_C, AT(now.setup->Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
+    {variable::lambda_x, AT(horizontal_force(now, 0))},
+    {variable::lambda_y, AT(horizontal_force(now, 1))},
     {variable::tau, AT(now.dynamics().tau)},
-    {variable::tau_brake, AT(now.brake_moment()), nullptr,
+    {variable::tau_brake, AT(brake_moment(now)), nullptr,
      [](const Force& force, const Force& rate) { return wheel_brake_moment_rate(&force.axle, &rate.axle); }},
-    {variable::slip_x, AT(now.slip(0))},
-    {variable::slip_y, AT(now.slip(1))},
-    {variable::M_guide_1, AT(now.guide_moment(0))},
-    {variable::M_guide_2, AT(now.guide_moment(1))},
+    {variable::slip_x, AT(slip(now, 0))},
+    {variable::slip_y, AT(slip(now, 1))},
+    {variable::M_guide_1, AT(guide_moment(now, 0))},
+    {variable::M_guide_2, AT(guide_moment(now, 1))},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
     {variable::omega_z_dot, AT(now.dynamics().omega_z_dot)},
-    {variable::E, AT(now.energy())},
+    {variable::E, AT(energy(now))},
     {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda)), nullptr,
      [](const Force& force, const Force& rate) { return wheel_required_friction_rate(force.lambda, rate.lambda); }},
-    {variable::contact_mode, AT(now.contact_mode())},
-    {variable::friction_mode, AT(now.friction_mode())},
-    {variable::n_steps, AT(double(now.counters().steps))},
-    {variable::n_rhs, AT(double(now.counters().rhs))},
-    {variable::n_jac, AT(double(now.counters().jacobians))},
-    {variable::n_roots, AT(double(now.counters().roots))},
-    {variable::n_events, AT(double(now.transitions()))},
-    {variable::n_restarts, AT(double(now.counters().restarts))},
+    {variable::contact_mode, AT(now.scene.contact)},
+    {variable::friction_mode, AT(friction_mode(now))},
+    {variable::n_steps, AT(double(now.counters.steps))},
+    {variable::n_rhs, AT(double(now.counters.rhs))},
+    {variable::n_jac, AT(double(now.counters.jacobians))},
+    {variable::n_roots, AT(double(now.counters.roots))},
+    {variable::n_events, AT(double(now.transitions))},
+    {variable::n_restarts, AT(double(now.counters.restarts))},
 };
 
 #undef AT
@@ -80,7 +124,7 @@ constexpr Row computed_row(const char* name, Type type, Role role) {
   constexpr auto reads_it = [](const Access& reader) { return reader.variable == variable; };
   static_assert(std::count_if(std::begin(readers), std::end(readers), reads_it) == 1, "one reader for each");
   const Access& r = *std::find_if(std::begin(readers), std::end(readers), reads_it);
-  return {name, type, role, 0, 0, 0, r.read, r.read_rate, r.by_force};
+  return {name, type, role, 0, -unlimited, unlimited, r.read, r.read_rate, r.by_force};
 }
 
 constexpr Row rows[] = {
@@ -95,7 +139,22 @@ static_assert(std::size(rows) == variable_count && std::size(readers) == variabl
 
 const Row& row_of(unsigned variable) { return rows[variable]; }
 
-bool is_above(unsigned v, double value) { return v == variable::slope ? value >= rows[v].max : value > rows[v].max; }
+Force force_of(Reading& now) {
+  const WheelDynamics& d = now.dynamics();
+  const WheelScene& scene = now.scene;
+  return {{d.lambda[0], d.lambda[1], d.lambda[2]}, {d.tau, d.lambda[2], scene.wheel.s, scene.load.brake}};
+}
+
+Limit limit_passed(unsigned v, double value) {
+  using namespace variable;
+  const Row& row = rows[v];
+  const bool positive = v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;
+  if (positive && value <= row.min) return {"greater than", "%s = %s: it must be greater than %s.", row.min};
+  if (value < row.min) return {"at least", "%s = %s: it must be at least %s.", row.min};
+  if (v == slope && value >= row.max)  // a road is never upright
+    return {"less than", "%s = %s rad: it must be less than %s.", row.max};
+  return value > row.max ? Limit{"at most", "%s = %s: it must be at most %s.", row.max} : Limit{};
+}
 
 bool is_variable(unsigned variable, Type type) { return variable < variable_count && rows[variable].type == type; }
 

@@ -9,7 +9,7 @@
 
 namespace wheel {
 
-class Reading;
+struct Reading;
 
 // What acts on the wheel at the ground, fixed axes, N, and about the axle; or its rate of change by some quantity.
 struct Force {
@@ -41,16 +41,23 @@ struct Row {
   const char* name;
   Type type;
   Role role;
-  double start, min, max;         // stored variables
+  double start, min, max;         // of stored variables; others have no limits
   double (*read)(Reading&);       // computed variables, else null
-  double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.hpp
+  double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.cpp
   // The derivative of what is not linear in the forces, from forces and derivatives of the forces; else null.
   double (*by_force)(const Force& force, const Force& rate);
 };
 
 const Row& row_of(unsigned variable);
-// Whether a value lies above the limit of a stored variable; a road is never upright.
-bool is_above(unsigned variable, double value);
+Force force_of(Reading& now);
+
+// A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the
+// message of it: name, value, limit.
+struct Limit {
+  const char *relation = nullptr, *message = nullptr;
+  double value = 0;
+};
+Limit limit_passed(unsigned variable, double value);
 // Whether the value reference names a variable of this type.
 bool is_variable(unsigned variable, Type type);
 

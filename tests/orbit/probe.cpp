@@ -1,8 +1,8 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
 #include <new>
 
-#include "contact.hpp"
-#include "problem.hpp"
+#include "law.hpp"
+#include "wheel.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)
@@ -13,9 +13,10 @@
 namespace {
 
 struct Probe {
-  wheel::Wheel wheel{wheel::Reporter(), wheel::Kind::co_simulation};
-  solver::Solver& solver = wheel.solution.solver;
-  orbit::Orbit& orbit = wheel.solution.orbit;
+  wheel::Reporter reporter;
+  wheel::Wheel wheel{reporter, wheel::Kind::co_simulation};
+  solver::Solver& solver = wheel.solver;
+  orbit::Orbit& orbit = wheel.orbit;
 };
 
 double force(const Probe& probe, const double* y) {
@@ -61,7 +62,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
   for (int i = 0; i < count; ++i) wheel.demand.parameters[references[i]] = values[i];
   wheel.demand.tolerance = tolerance;
   wheel.setup = wheel::setup_of(wheel.demand);
-  wheel::put_in_force(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
+  wheel::apply(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
   return probe;
 }
 

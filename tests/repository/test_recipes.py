@@ -42,7 +42,6 @@ double short_of_line(const Setup& setup, const InForce&, double, const double* y
         """    {.event = Event::crosses_line,
      .can_occur = has_line,
      .value = short_of_line,
-     .follow = observe,
      .observed = "the wheel crosses the line"},
 """,
     ],
