@@ -168,7 +168,8 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Body b = body_of(scene, y);
   const Carrier* c = &b.carrier;
-  double d_x = cos(y[CHI]), d_y = sin(y[CHI]), X_dot, Y_dot;
+  Sines chi = wheel_sines(y[CHI]);
+  double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   double chi_dot = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
   set_velocity(c, b.h, y[SPEED] * d_x, y[SPEED] * d_y, &X_dot, &Y_dot);
@@ -181,12 +182,14 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   wheel_reduced.kinematics(wheel, y, out);
-  set_velocity(&c, out->Z_O, y[SPEED] * cos(y[CHI]), y[SPEED] * sin(y[CHI]), &out->X_O_dot, &out->Y_O_dot);
+  Sines chi = wheel_sines(y[CHI]);
+  set_velocity(&c, out->Z_O, y[SPEED] * chi.cosine, y[SPEED] * chi.sine, &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Body b = body_of(scene, y);
-  double d_x = cos(y[CHI]), d_y = sin(y[CHI]);
+  Sines chi = wheel_sines(y[CHI]);
+  double d_x = chi.cosine, d_y = chi.sine;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
   for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;

@@ -175,7 +175,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
     // Where the direction starts off its limit, errors hardly depend on the size of long steps.
-    const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.25, 3.0) : 0.25);
+    const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
     if (!known_ || !stops || next < liked_) liked_ = next;
     if (!known_ && is_shortest) break;
     if (!known_) continue;

@@ -170,7 +170,8 @@ struct RungeKutta::Work {
       const double next = next_size(error);
       // A step that was cut short shows little, so the size wanted before it is kept. After a rejection a step does not
       // grow.
-      *liked = rejected ? std::fmin(h, next) : h < *liked ? std::fmax(*liked, next) : next;
+      const bool cut_short = h < std::fmin(*liked, problem.longest_step);
+      *liked = rejected ? std::fmin(h, next) : cut_short ? std::fmax(*liked, next) : next;
       engine.size_ = h;
       engine.has_end_ = !waits;
       return nullptr;

@@ -66,9 +66,12 @@ std::optional<double> Search::find_first_fall(Sample lo, Sample hi) const {
   if (lo.g < 0) return lo.t;
   for (std::size_t i = 0; lo.t < hi.t; ++i) {
     const Sample end = i < extremes.size() && extremes[i] < hi.t ? sample(extremes[i]) : hi;
+    // A whole step is divided first where a known value may have given rise to the search: elsewhere it may look
+    // harmless.
+    const bool whole = step.inside_at > 0 && lo.t == step.start && end.t == step.end;
+    const Sample mid = sample(lo.t + (whole ? step.inside_at : 0.5) * (end.t - lo.t));
     int budget = most_samples;
-    if (const auto fall = look(lo, sample(0.5 * (lo.t + end.t)), end, most_halvings, &budget))
-      return fall_through(fall->before, fall->below);
+    if (const auto fall = look(lo, mid, end, most_halvings, &budget)) return fall_through(fall->before, fall->below);
     lo = end;
   }
   return {};

@@ -25,7 +25,7 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
   const bool matters = gravity > 1e-30 * length * rate * rate;
   setup.length = length;
   setup.own_time = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
-  setup.longest_step = 0.5 * setup.own_time;
+  setup.longest_step = 0.6 * setup.own_time;
   setup.weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
   setup.rate_scale = power_of_two_below(1 / setup.own_time);
   setup.moment_scale = power_of_two_below(setup.weight * length);
