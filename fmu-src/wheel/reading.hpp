@@ -8,8 +8,14 @@
 
 namespace wheel {
 
+struct Wheel;
+
 // The scene is that which holds for what follows the instant.
 struct Reading {
+  Reading() = default;
+  // The instant reached, with what was set since the last step. Writes run.y of the wheel.
+  explicit Reading(Wheel& wheel);
+
   const Setup* setup;
   WheelScene scene;
   double y[WHEEL_MAX_STATES];

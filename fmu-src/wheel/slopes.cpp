@@ -77,7 +77,7 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
   const auto move_to = [&](double near_x) {
     w.demand.value(parameter) = near_x;
     const bool exists = prepare(w, Reporter());
-    if (exists) now = reading_now(w);
+    if (exists) now = Reading(w);
     return exists;
   };
   bool done = false;
@@ -97,7 +97,7 @@ void keep_ground(Reading& now) {
 bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const Setup& setup = w.setup;
   const WheelFormulation& f = *setup.formulation;
-  Reading now = reading_now(w);
+  Reading now(w);
   if (known == variable::M_brake && !setup.exchanged && now.scene.friction.kind == WHEEL_FRICTIONLESS) {
     InForce used = in_force_now(w, now.y);
     used.inputs.braked = true;
@@ -135,7 +135,7 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 // In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
 // its own rate can be large, and acts as a moment about the axle.
 void take_along_motion(Wheel& w, Pass& pass) {
-  const Reading whole = reading_now(w);
+  const Reading whole(w);
   Setup setup = w.setup;
   setup.formulation = &wheel_reduced;
   if (setup.sliding) setup.sliding = &wheel_sliding;
@@ -173,7 +173,7 @@ void take_along_motion(Wheel& w, Pass& pass) {
 
 void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
   Pass pass;
-  Reading reading = reading_now(w);
+  Reading reading(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k)
     missing |= pass.asked[outputs[k] - stored_count] = !row_of(outputs[k]).read_rate;

@@ -54,7 +54,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   run.in_force.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
   apply(w.setup, w.demand, 0, run.y, run.in_force);
   w.demand.changed = false;
-  Reading start = reading_now(w);
+  Reading start(w);
   if (check_start(w, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
 }
@@ -65,16 +65,11 @@ InForce in_force_now(const Wheel& w, double* y) {
   return now;
 }
 
-Reading reading_now(Wheel& w) {
-  Reading now;
-  now.setup = &w.setup;
-  now.counters = counters_of(w.run, w.solver);
-  now.transitions = w.run.transitions;
-  std::copy_n(state_now(w), WHEEL_MAX_STATES, now.y);
+Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solver)), transitions(w.run.transitions) {
+  std::copy_n(state_now(w), WHEEL_MAX_STATES, y);
   // where nothing was set, without a copy of all that is in force
-  now.scene = w.demand.changed ? in_force_now(w, now.y).scene : w.run.in_force.scene_at(w.run.t);
-  now.scene.ground = WHEEL_GROUND_BY_FORCE;
-  return now;
+  scene = w.demand.changed ? in_force_now(w, y).scene : w.run.in_force.scene_at(w.run.t);
+  scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
 void reset(Wheel& w) {
@@ -137,7 +132,7 @@ void close(Wheel& w) {
 double value_of(Wheel& w, unsigned variable) {
   if (variable < stored_count) return w.demand.value(variable);
   if (!w.reading) {
-    w.reading = reading_now(w);
+    w.reading.emplace(w);
     if (w.demand.changed) warn_of_jam(w, w.reading->scene, w.reading->y);
   }
   return row_of(variable).read(*w.reading);

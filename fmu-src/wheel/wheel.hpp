@@ -50,9 +50,7 @@ const double* state_now(Wheel& wheel);
 // demand.changed and orbit_until.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
-// The instant reached, with what was set since the last step. Writes run.y.
-Reading reading_now(Wheel& wheel);
-// What acts there; y: a copy of run.y, whose slip it writes.
+// What acts at the instant reached, with what was set since the last step; y: a copy of run.y, whose slip it writes.
 InForce in_force_now(const Wheel& wheel, double* y);
 
 // As new: start values, nothing computed.
