@@ -1,4 +1,4 @@
-"""Shared by the examples' figures: two maps side by side, theta at the start over the spin at the start."""
+"""Shared by the examples' figures: two maps side by side, initial theta over initial spin."""
 
 import json
 from collections.abc import Mapping
@@ -61,11 +61,11 @@ def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text
             fate = one["status"].where(one["status"] == code)
             ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
         ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
-        ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"spin at the start $|\dot\varphi|$ [rad/s]")
+        ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"initial spin $|\dot\varphi|$ [rad/s]")
         ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
         paper = "paper" if faster == 1 else "paper, scaled"
         ax.annotate(paper, start, textcoords="offset points", color="white", fontsize=8, **beside)
-    axes[0].set_ylabel(r"angle at the start $\theta$ [deg]")
+    axes[0].set_ylabel(r"initial angle $\theta$ [deg]")
     axes[1].set_yticklabels([])
     bar = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
     bar.set_label(text.format(studied(small)["stop_time"]))

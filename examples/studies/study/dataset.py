@@ -28,7 +28,7 @@ SYMBOLS = {  # in labels, by the text of a measure
     rf"\b{PLANE_ANGLE}\b": ANGLE,
     rf"^\s*({SLIP}|max\({SLIP}\))\s*$": "largest slip",
     r"^\s*slid\s*$": "time of sliding",
-    r"_start\b": " at the start",
+    r"\b(\w+)_start\b": r"initial \1",
     **{rf"\b{name}(?![a-z])": symbol for name, symbol in GREEK.items()},
     r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
     r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
@@ -108,7 +108,7 @@ def attributes(unit: str | None, name: str, description: str | None) -> dict[str
 
 
 def label(text: str) -> str:
-    """The short label of a variable, or of a measure of variables, for axes and legends: `θ at the start`."""
+    """The short label of a variable, or of a measure of variables, for axes and legends: `initial θ`."""
     for pattern, symbol in SYMBOLS.items():
         text = re.sub(pattern, symbol, text)
     return re.sub(r"\d+\.\d{5,}(?!\d*e)", lambda found: f"{float(found[0]):.4g}", text)

@@ -55,8 +55,8 @@ def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> N
     begun = results.sel(theta_start=np.radians(75.0), s=0.03, phi_dot_start=-2.0)
     assert float(begun["theta"][0]) == np.radians(75.0)
     labels = {name: values.attrs["long_name"] for name, values in results.variables.items()}
-    expected = {"theta_start": "θ at the start", "s": "s", "down": "first(θ < 30deg)"}
-    assert (expected | {"phi_dot_start": "φ\N{COMBINING DOT ABOVE} at the start"}).items() <= labels.items()
+    expected = {"theta_start": "initial θ", "s": "s", "down": "first(θ < 30deg)"}
+    assert (expected | {"phi_dot_start": "initial φ\N{COMBINING DOT ABOVE}"}).items() <= labels.items()
     turned = in_degrees(results)
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "theta_start in deg, relative")
