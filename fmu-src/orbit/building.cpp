@@ -17,7 +17,7 @@ constexpr double finer = 0.05, finest = 1e-14;
 // accurate as they estimate.
 constexpr double loosest = 1e-8;
 // Longest step over that of a motion that is stepped through: every turn of the run repeats these few steps.
-constexpr double shorter = 5.0 / 6;
+constexpr double shortening = 5.0 / 6;
 // In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps,
 // and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a state may change within
 // the longest step by what breaks the symmetry, which rounding does too.
@@ -46,7 +46,7 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
                            solver::Solver& solver) {
   double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  problem.longest_step *= shorter;
+  problem.longest_step *= shortening;
   *this = Orbit();
   if (rests(problem, own)) return result_ = Result::steady;
   result_ = follow(problem, pass, own, solver);

@@ -15,7 +15,7 @@
 namespace solver {
 namespace {
 
-using dormand_prince::a, dormand_prince::d, dormand_prince::e, dormand_prince::stages;
+using dormand_prince::stages;
 
 // The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
 constexpr double share_of_tolerance = 0.03;
@@ -40,7 +40,7 @@ constexpr auto stages_of() {
 
 // Of stage i, from the start of the step, in its length.
 template <int i>
-constexpr double time_of = std::accumulate(a[i], a[i] + stages, 0.0);
+constexpr double time_of = std::accumulate(dormand_prince::a[i], dormand_prince::a[i] + stages, 0.0);
 
 }  // namespace
 
@@ -77,7 +77,7 @@ struct RungeKutta::Work {
   template <int i>
   void advance(double* y) const {
     double change[width];
-    combine<a, i>(change);
+    combine<dormand_prince::a, i>(change);
     for (int k = 0; k < width; ++k) y[k] = step.y_start[k] + change[k];
   }
   template <int i>
@@ -95,8 +95,8 @@ struct RungeKutta::Work {
   // Both estimates together, as DOP853 weighs them.
   double error() const {
     double e_3[width], e_5[width];
-    combine<e, 0>(e_3);
-    combine<e, 1>(e_5);
+    combine<dormand_prince::e, 0>(e_3);
+    combine<dormand_prince::e, 1>(e_5);
     const double high = norm(e_5), low = norm(e_3);
     return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
   }
@@ -188,10 +188,10 @@ struct RungeKutta::Work {
     const bool finite = (engine.has_end_ || !std::isnan(evaluate(12, step.end, step.y_end))) && stage<13>(at) &&
                         stage<14>(at) && stage<15>(at);
     step.lowest_margin = lowest_margin;
-    combine<d, 0>(p_3);
-    combine<d, 1>(p_4);
-    combine<d, 2>(p_5);
-    combine<d, 3>(p_6);
+    combine<dormand_prince::d, 0>(p_3);
+    combine<dormand_prince::d, 1>(p_4);
+    combine<dormand_prince::d, 2>(p_5);
+    combine<dormand_prince::d, 3>(p_6);
     const auto& f = engine.f_;
     auto& c = step.c;
     step.degree = finite ? 7 : 0;
