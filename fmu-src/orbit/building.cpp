@@ -56,28 +56,22 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
 Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
-  double y[states], T1[2] = {0, 0}, swing = 0, before = y0[omega_1], t = 0;
+  double y[states], swing = 0, before = y0[omega_1];
   bool turned = before == 0;
   if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
   for (;;) {
     const solver::Outcome outcome = step(problem, pass, solver);
     if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
-    const double t_before = t;
-    t = solver.known_until();
-    solver.read(t, y);
+    solver.read(solver.known_until(), y);
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
-      if (turned) {
-        T1_ = turning_point(T1[0], T1[1]);
-        T2_ = turning_point(t_before, t);
-        return fold(problem, swing) ? Result::folded : Result::refused;
-      }
-      T1[0] = t_before;
-      T1[1] = t;
+      T2_ = turning_point(problem, before, solver);
+      if (turned) return fold(problem, swing) ? Result::folded : Result::refused;
+      T1_ = T2_;
       turned = true;
       swing = 0;
     }
     if (outcome == solver::Outcome::event) {
-      T2_ = t;
+      T2_ = solver.known_until();
       event_ = solver.event();
       return Result::ended;
     }
@@ -102,28 +96,14 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
   }
 }
 
-// The zero of omega_1 between two instants of the track, by regula falsi (Illinois).
-double Orbit::turning_point(double a, double b) const {
-  const auto rate = [this](double t) {
-    double y[states];
-    track_.read(t, y);
-    return y[omega_1];
-  };
-  double f_a = rate(a), f_b = rate(b);
-  if (f_a == 0 || a == b) return a;
-  for (int i = 0; i < 60 && f_b != 0 && a != b; ++i) {
-    const double t = b - f_b * (b - a) / (f_b - f_a), f = rate(t);
-    if (t == b) break;
-    if (std::signbit(f) != std::signbit(f_b)) {
-      a = b;
-      f_a = f_b;
-    } else {
-      f_a *= 0.5;
-    }
-    b = t;
-    f_b = f;
-  }
-  return b;
+// Where omega_1 falls through zero in the last step, seen from the side of `before`, on which the step begins.
+double Orbit::turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
+  const auto value = [](void*, int side, double, const double* y) { return side * y[omega_1]; };
+  const solver::Watched watched = {before > 0 ? 1 : -1, value, false, omega_1};
+  const double end = solver.known_until();
+  long long uncounted = 0;
+  const solver::Search search = {problem, solver.last_step(), watched, {}, &uncounted};
+  return search.find_first_fall(search.sample(solver.step_start()), search.sample(end)).value_or(end);
 }
 
 // Whether the half from T1 to T2 represents the whole motion.

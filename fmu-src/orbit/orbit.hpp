@@ -91,7 +91,7 @@ class Orbit {
   bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
-  double turning_point(double t_lo, double t_hi) const;
+  static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
   bool fold(const solver::Problem& problem, double swing);
   bool is_mirrored(const solver::Problem& problem, double since) const;
   // orbit.cpp
