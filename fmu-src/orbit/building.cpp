@@ -56,7 +56,8 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
 Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
-  double y[states], swing = 0, before = y0[omega_1];
+  double y[states], weights[states], swing = 0, before = y0[omega_1];
+  problem.weights(problem.owner, problem.share, y0, weights);
   bool turned = before == 0;
   if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
   for (;;) {
@@ -65,7 +66,8 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
     solver.read(solver.known_until(), y);
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       T2_ = turning_point(problem, before, solver);
-      if (turned) return fold(problem, swing) ? Result::folded : Result::refused;
+      if (turned && swing * weights[omega_1] < least_swing) return Result::refused;
+      if (turned) return fold(problem, Result::folded) ? Result::folded : Result::refused;
       T1_ = T2_;
       turned = true;
       swing = 0;
@@ -107,22 +109,19 @@ double Orbit::turning_point(const solver::Problem& problem, double before, solve
 }
 
 // Whether the half from T1 to T2 represents the whole motion.
-bool Orbit::fold(const solver::Problem& problem, double swing) {
+bool Orbit::fold(const solver::Problem& problem, Result kind) {
   constexpr int samples = 8;
-  double weights[states];
+  result_ = kind;
   take_half();
-  problem.weights(problem.owner, problem.share, second_, weights);
-  if (!(T2_ > T1_) || swing * weights[omega_1] < least_swing) return false;
-  result_ = Result::folded;
   for (int i = 0; i < samples; ++i)
     if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
-  return true;
+  return T2_ > T1_;
 }
 
 // Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
 bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   double y[states], rate[states], image[states];
-  track_.read(T2_ - since, y);
+  read_own(T2_ - since, y);
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
   for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
@@ -165,24 +164,13 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
 }
 
-// Keeps the circle (or straight line) of a steady motion; false where the right-hand side leads off it within `length`
-// (s).
+// Keeps the circle (or straight line) of a steady motion, of which any piece is a half: that of this length, s.
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
-  constexpr int parts = 5;
-  double y[states], expected[states] = {};
+  T2_ = length;
   std::copy_n(y0, states, first_);
   first_[omega_1] = 0;
   std::copy_n(rate, states, steady_rate_);
-  for (const State i : {omega_1, psi, phi}) expected[i] = rate[i];  // `rests` has seen to that of omega_1
-  for (int i = 0; i <= parts; ++i) {
-    const double t = length * i / parts;
-    read_circle(t, y);
-    set_place(expected, place_of(rate) * std::polar(1.0, rate[psi] * t));
-    if (!maps(problem, 0, y0, t, y, expected)) return false;
-  }
-  T2_ = length;
-  read_circle(T2_, second_);
-  return true;
+  return fold(problem, Result::steady);
 }
 
 }  // namespace orbit

@@ -25,8 +25,9 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
 
 // What the sums need, from the states at T1 and T2, and the recurring events.
 void Orbit::take_half() {
-  track_.read(T1_, first_);
-  track_.read(T2_, second_);
+  half_ = {};
+  read_own(T1_, first_);
+  read_own(T2_, second_);
   delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
   displacement_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
   pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
@@ -78,7 +79,7 @@ void Orbit::turn_by(const Half& half, Complex way, double* y) {
 // psi, phi and the displacement of O are proportional to the time, along a chord that turns half as fast as the wheel.
 void Orbit::read_circle(double t, double* y) const {
   const double half = 0.5 * steady_rate_[psi] * t, shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
-  std::copy_n(first_, states, y);
+  for (const State i : {theta, omega_1, omega_2, omega_3}) y[i] = first_[i];
   y[psi] = steady_rate_[psi] * t;
   y[phi] = steady_rate_[phi] * t;
   set_place(y, place_of(steady_rate_) * (t * shortened) * std::polar(1.0, half));

@@ -92,7 +92,7 @@ class Orbit {
   Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
-  bool fold(const solver::Problem& problem, double swing);
+  bool fold(const solver::Problem& problem, Result kind);
   bool is_mirrored(const solver::Problem& problem, double since) const;
   // orbit.cpp
   void take_half();
