@@ -187,7 +187,6 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     failure_ = nullptr;
     return true;
   }
-  known_ = false;
   return false;
 }
 

@@ -68,17 +68,12 @@ Event ending_at(const Setup& setup, const Run& run) {
   return ending;
 }
 
-// A wheel that has just been stopped can be let go at once.
 void decide_friction(const Setup& setup, Run& run, bool led) {
   const EventRow& row = row_of(Event::spin_changes);
-  const WheelFrictionKind& law = run.in_force.scene.friction.kind;
-  const WheelFrictionKind before = law;
-  const auto change = [&] { pass(row, setup, run.t, run.y, run.in_force); };
   if (led && has_occurred(row, setup, run))
-    change();
+    pass(row, setup, run.t, run.y, run.in_force);
   else
     decide_law(setup, run.t, run.y, run.in_force);
-  if (law == WHEEL_HELD && before != law && has_occurred(row, setup, run)) change();
 }
 
 }  // namespace
