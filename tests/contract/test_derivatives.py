@@ -68,6 +68,18 @@ def test_output_derivatives_follow_a_slip_that_turns_ever_faster_as_it_ends(whee
         beyond(np.max(np.abs(rates(w.by(ahead / 50)) - exact) / (1 + np.abs(exact))), 1e-4, "change within a fiftieth")
 
 
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("slip", [1e-2, 1e-3])
+def test_output_derivatives_follow_a_slow_slip_that_the_motion_turns_at_once(wheel, formulation, slip):
+    """By up to 1e4 rad/s, while the wheel itself turns by 6 rad/s."""
+    start = {"mu_max": 0.4, "mu_slide": 0.4, "psi_dot_start": 1.5, "phi_dot_start": -6.0, "slip_x_start": -slip}
+    w = wheel().start(tolerance=1e-13, formulation=formulation, **start)
+    exact, difference = rates(w), forward_difference(w, 1e-4 * slip)
+    errors = np.abs(exact - difference) / (1 + np.abs(exact))
+    within(dict(zip(outputs(w), errors, strict=True)), 1e-6, "rate off the difference, relative")
+    beyond(np.abs(exact).max(), 40 / slip, "largest rate")
+
+
 def jacobian(w: FMU2Wheel) -> np.ndarray:
     return w.jacobian(outputs(w), INPUTS)
 

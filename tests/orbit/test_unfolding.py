@@ -123,6 +123,27 @@ def test_excursions_below_zero_are_found_at_their_instants_however_late(library:
     assert orbit.falls_until(np.nextafter(orbit.fall(late - 1), 0)) == late - 1
 
 
+# At its highest N is just above zero, a few ms before and after below it; on the way up from its lowest.
+CREST = Start(psi=0.0, theta=0.78, psi_dot=5.1512, theta_dot=0.0, phi_dot=4.027)
+
+
+def test_a_fall_right_behind_the_turning_point_counts_once(library: ctypes.CDLL) -> None:
+    """The step that passes the turning point finds it, and so does the mirror."""
+    crest = Orbit(library, start=CREST, keep_contact=True)
+    theta, theta_dot, omega_2, omega_3 = crest([0.8 * crest.half_period])[0, :4]
+    psi_dot = omega_2 / sin(theta)
+    start = Start(theta=theta, psi_dot=psi_dot, theta_dot=theta_dot, phi_dot=omega_3 - psi_dot * cos(theta))
+    orbit = Orbit(library, start=start, keep_contact=True)
+    t = np.linspace(0, 4 * orbit.half_period, 40_001)
+    N = orbit.read(t)[1]
+    falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
+    turn = 1.2 * orbit.half_period
+    assert orbit.kind == "folded" and ((falls > turn) & (falls < turn + 0.01)).sum() == 1
+    found = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
+    assert len(found) == len(falls) == 4
+    assert (np.abs(falls - found) <= t[1]).all()
+
+
 def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(library: ctypes.CDLL) -> None:
     """Resonance: the turn of psi in half a nutation is a multiple of pi, and sin(n delta) / sin(delta) is n."""
 

@@ -4,7 +4,7 @@ Coulomb's law: grip up to mu_max N, then mu_slide N against the slip. Upright an
 e1, slip_x = v + R omega_z. SI.
 """
 
-from math import cos, degrees, pi, radians, sin
+from math import cos, degrees, hypot, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -214,6 +214,15 @@ def test_the_error_of_every_output_of_a_slide_stays_below_three_tolerances(libra
             within(off / tolerance, most * grown, f"error of formulation {formulation}, in tolerances of {tolerance:g}")
     slower = {"mu_slide": scene.road.mu_slide * (1 - 1e-6)}
     beyond(error(library, scene, 1e-10, 1.0, **slower) / 1e-10, 100, "error with another coefficient, in tolerances")
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-8, 1e-10])
+def test_a_slip_begins_with_less_than_a_fiftieth_of_the_tolerance(library: Library, tolerance: float) -> None:
+    """In m/s: what it is taken to be before the first step, to have a direction."""
+    with library.wheel() as wheel:
+        slip = wheel.start(tolerance=tolerance, mu_max=0.1, mu_slide=0.1).get("slip_x", "slip_y")
+    beyond(hypot(*slip), 0.0, "first slip, m/s")
+    within(hypot(*slip), 0.02 * tolerance, "first slip, m/s")
 
 
 def moments(scene: Scene) -> list[tuple[float, int]]:
@@ -455,6 +464,18 @@ def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_e
     slowing = -np.diff(speeds) / 0.2 / PAPER.g
     hill = [0.15 * cos(0.3) + sin(0.3), 0.15 * cos(0.3) - sin(0.3)]
     within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 4096 * EPSILON, "deceleration over g")
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_slip_that_begins_where_the_ground_pulls_keeps_its_direction(library: Library, formulation: int) -> None:
+    """Without a force of the road it begins along the acceleration of the contact."""
+    fast = {"theta_start": 2.0, "psi_dot_start": -3.0, "theta_dot_start": 14.0, "phi_dot_start": 15.5}
+    with library.wheel(logging=True) as wheel:
+        wheel.start(keep_contact=True, formulation=formulation, mu_max=1.0, mu_slide=0.36, **fast).to(0.01)
+        assert [text.split(": ")[1].split(";")[0] for text in wheel.texts()] == [
+            "the wheel starts to slide.",
+            "the ground pulls",
+        ]
 
 
 @pytest.mark.parametrize("when", ["initializing", "at the start", "by parameters"])

@@ -60,6 +60,17 @@ def test_a_restored_run_logs_the_same_pulls(wheel, method, t):
     assert min(instants_of_pulls(w)) > t  # a pull that had begun before is not logged again
 
 
+def test_a_run_whose_orbit_is_built_where_the_ground_pulls_has_the_state_of_one_that_finds_it_built(wheel):
+    """At its highest, where the orbit has been followed to, the ground pulls; at the start it presses."""
+    start = {"theta_start": 0.2978, "psi_dot_start": -11.7446, "theta_dot_start": -4.4802, "phi_dot_start": 18.5632}
+    w, states = wheel(), []
+    for _ in range(2):
+        states.append(w.start(keep_contact=True, **start).to(0.3, 1.0).serialized())
+        assert w.terminate() == w.reset() == OK
+    assert len(pulls_of(w)) == 2 * 3
+    assert states[0] == states[1]
+
+
 @pytest.mark.parametrize("braked", [0.0, 2.0])
 @pytest.mark.parametrize("slope", [5.0, -5.0])
 def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
@@ -125,6 +136,15 @@ def test_cuts_of_a_polynomial_at_a_late_start_time_are_no_changes(wheel):
     for k in range(20):
         w.give({"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)}).to(1e9 + 0.03 * (k + 1))
     assert w.get("n_restarts") == [0]
+
+
+def test_a_small_change_at_a_late_start_time_is_taken(wheel):
+    """At 1e6 s, where times are rounded to 1e-10 s: the ramp goes on, higher by 1e-8 N."""
+    ends = []
+    for change in (0.0, 1e-8):
+        w = wheel().start(start=1e6, theta_start=pi / 2, phi_dot_start=0.0).give({"F_Z": (0.0, 1.0)}).to(1e6 + 1.0)
+        ends += w.give({"F_Z": (1.0 + change, 1.0)}).to(1e6 + 1.5).get("lambda_3")
+    within(abs(ends[0] - ends[1] - 1e-8), 32 * WEIGHT * EPSILON, "change of lambda_3 off that of F_Z, N")
 
 
 def test_a_ground_that_pulls_does_not_hold_the_wheel(wheel):

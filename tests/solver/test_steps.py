@@ -9,7 +9,7 @@ from scipy.integrate import DOP853
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 from support.paths import ROOT
 
-from .solving import FAILED, harmonic
+from .solving import EVENT, FAILED, harmonic
 
 # The table of DOP853 (dormand_prince.hpp) is SciPy's, row by row; stage 12 is the end of the step.
 MATRICES = {"a": (*DOP853.A, DOP853.B, *DOP853.A_EXTRA), "e": (DOP853.E3, DOP853.E5), "d": DOP853.D}
@@ -87,6 +87,21 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
     within(relative_error(limited.known - limited.begin, 0.01), 128 * EPSILON, "first step, relative")
     beyond((one.now.known - one.now.begin) / (before.known - before.begin), 0.9, "second step over that before")
     assert limited.rhs - before.rhs == 12  # what only its dense output needs is left out
+
+
+def test_after_an_event_right_behind_the_start_of_a_step_a_thousandth_of_it_is_next_even_from_bytes(solver, method):
+    falls = [9.0]
+    one = solver(method, "clock", longest_step=0.1, each_step=lambda t, y: falls[0] - t)
+    one.run(inf, 6)
+    falls[0] = one.now.known + 1e-9
+    assert one.step() == EVENT
+    falls[0] = 9.0
+    one.restart(one.now.known, one.read(one.now.known))
+    other = one.copied()
+    one.step()
+    other.step()
+    assert one.now == other.now
+    within(one.now.known - one.now.begin, 1.01e-4, "step after the event, s")
 
 
 @pytest.mark.parametrize("problem", ["explosive", "ending"])
