@@ -18,13 +18,13 @@ typedef struct Body {
   Carrier carrier;
   Inertia inertia;
   Action given;
-  double h, l;                       /* m, height of O, r_0 sin(theta) + r, and its rate per unit of omega_1 */
-  double per_mass, per_22, per_tilt; /* inverse of m, I_22, and of I_11 - p^2 / I_22 + m l^2 */
-  double g_x, g_y;                   /* what a unit of the ground's horizontal force adds to N */
-  double N_free;                     /* N, normal force without sliding friction */
-  double mu, s;                      /* 1 and m, coefficients of the ground's friction; zero where it pulls */
-  double kappa;                      /* tau = -(s N + brake) kappa */
-  int held;                          /* omega_3 is held at zero */
+  double h, l; /* m, height of O, r_0 sin(theta) + r, and its rate per unit of omega_1 */
+  double per_mass, per_spin, per_22, per_tilt; /* inverse of m, J_z, I_22, and of I_11 - p^2 / I_22 + m l^2 */
+  double g_x, g_y;                             /* what a unit of the ground's horizontal force adds to N */
+  double N_free;                               /* N, normal force without sliding friction */
+  double mu, s;                                /* 1 and m, coefficients of the ground's friction; zero where it pulls */
+  double kappa;                                /* tau = -(s N + brake) kappa */
+  int held;                                    /* omega_3 is held at zero */
 } Body;
 
 /* What follows. */
@@ -45,7 +45,7 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
   a.N = on->N_rest + w->m * b->l * a.omega_1_dot;
   a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
-  a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) / w->J_z;
+  a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
   return (Motion){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - c->eta * a.omega_2_dot + c->rho * a.omega_3_dot,
@@ -65,6 +65,7 @@ INLINED Body body_of(const WheelScene* scene, const double* y) {
   b.h = w->r_0 * c->sin_theta + w->r;
   b.l = w->r_0 * c->cos_theta;
   b.per_mass = 1 / w->m;
+  b.per_spin = 1 / w->J_z;
   b.per_22 = yield / b.inertia.I_22;
   b.per_tilt = yield / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
   b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
@@ -166,9 +167,9 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 
 /* Returns N, infinite where the wheel jams. */
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  Sines chi = wheel_sines(y[CHI]); /* first: behind the call nothing is left in registers */
   Body b = body_of(scene, y);
   const Carrier* c = &b.carrier;
-  Sines chi = wheel_sines(y[CHI]);
   double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   double chi_dot = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;

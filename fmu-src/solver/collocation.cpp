@@ -104,11 +104,9 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     turning[j] = y[problem.settling.speed] * (f(j, turned) - f_[j][turned]);
   }
   f.col(turned) = before.col(turned) - newton.matrix.solve(turning);
+  const Rates change = size_ * (f - before);
   double largest = 0;
-  for (int j = 0; j < radau_points; ++j) {
-    const Row change = size_ * (f.row(j) - before.row(j));
-    largest = std::fmax(largest, weighted_norm<max_states>(change.data(), weights));
-  }
+  for (int j = 0; j < radau_points; ++j) largest = std::max(largest, weighted_norm<max_states>(&change(j, 0), weights));
   before = f;
   return std::isfinite(largest) ? largest : INFINITY;
 }
