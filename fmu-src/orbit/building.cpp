@@ -67,7 +67,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
     if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
       T2_ = turning_point(problem, before, solver);
       if (turned && swing * weights[omega_1] < least_swing) return Result::refused;
-      if (turned) return fold(problem, Result::folded) ? Result::folded : Result::refused;
+      if (turned) return unfold(problem, Result::unfolded) ? Result::unfolded : Result::refused;
       T1_ = T2_;
       turned = true;
       swing = 0;
@@ -109,7 +109,7 @@ double Orbit::turning_point(const solver::Problem& problem, double before, solve
 }
 
 // Whether the half from T1 to T2 represents the whole motion.
-bool Orbit::fold(const solver::Problem& problem, Result kind) {
+bool Orbit::unfold(const solver::Problem& problem, Result kind) {
   constexpr int samples = 8;
   result_ = kind;
   take_half();
@@ -170,7 +170,7 @@ bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const do
   std::copy_n(y0, states, first_);
   first_[omega_1] = 0;
   std::copy_n(rate, states, steady_rate_);
-  return fold(problem, Result::steady);
+  return unfold(problem, Result::steady);
 }
 
 }  // namespace orbit

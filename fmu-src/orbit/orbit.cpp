@@ -89,7 +89,7 @@ void Orbit::read_circle(double t, double* y) const {
 void Orbit::read_own(double t, double* y) const { result_ == Result::steady ? read_circle(t, y) : track_.read(t, y); }
 
 void Orbit::read(double t, double* y) const {
-  if (result_ != Result::folded || t <= T2_) {
+  if (result_ != Result::unfolded || t <= T2_) {
     read_own(t, y);
     return turn_by(lead_, place_of(y), y);
   }

@@ -31,12 +31,12 @@ namespace orbit {
 
 class Orbit {
  public:
-  // folded:  read() is valid at every t >= 0: the motion never ends.
-  // steady:  a circle or a straight line for ever.
-  // ended:   event() happened at end_time(), in the first nutation; read() is valid up to there.
+  // unfolded: read() is valid at every t >= 0: the motion never ends.
+  // steady: a circle or a straight line for ever.
+  // ended: event() happened at end_time(), in the first nutation; read() is valid up to there.
   // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
-  //          that have not the symmetry. The caller then steps through the motion from its start.
-  enum class Result { refused, folded, steady, ended };
+  //   that have not the symmetry. The caller then steps through the motion from its start.
+  enum class Result { refused, unfolded, steady, ended };
 
   // What follows from an event at t and y, for the owner to decide. One after which the motion goes on recurs: it is
   // the fall of a function that rises at the next such event and falls again at the third, as N does. Where the motion
@@ -57,8 +57,8 @@ class Orbit {
   int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
-  double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; folded only
-  // rad/s, the larger of the mean rates of psi and phi; folded or steady.
+  double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; unfolded only
+  // rad/s, the larger of the mean rates of psi and phi; unfolded or steady.
   double fastest_turn() const;
 
   // Whether some event recurs, and the instants at which one does.
@@ -92,7 +92,7 @@ class Orbit {
   Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
-  bool fold(const solver::Problem& problem, Result kind);
+  bool unfold(const solver::Problem& problem, Result kind);
   bool is_mirrored(const solver::Problem& problem, double since) const;
   // orbit.cpp
   void take_half();

@@ -20,7 +20,7 @@ from support.motion import start_values
 from support.paths import ROOT
 
 Array = NDArray[np.float64]
-KINDS = ("refused", "folded", "steady", "ended")
+KINDS = ("refused", "unfolded", "steady", "ended")
 ADDED = CFUNCTYPE(c_double, c_double, POINTER(c_double))
 VARIABLES = ElementTree.parse(ROOT / "modelDescription.xml").iter("ScalarVariable")
 REFERENCES = {variable.get("name"): int(variable.get("valueReference")) for variable in VARIABLES}

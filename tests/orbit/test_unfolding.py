@@ -39,7 +39,7 @@ def test_after_1000_s_each_output_is_right_to_a_millionth_of_its_range(library: 
     t = np.arange(0.05, 1000, 0.73)
     want = Halves(Wheel(), PAPER).read(t)
     orbit = Orbit(library)
-    assert orbit.kind == "folded"
+    assert orbit.kind == "unfolded"
     within(range_error(orbit(t), want), 1e-6, "error / range")
     within(range_error(Orbit(library, tolerance=1e-12)(t), want), 1e-9, "error at a tight tolerance / range")
     few = t[::20]
@@ -52,7 +52,7 @@ def test_it_is_the_motion_that_the_reference_steps_through(library: ctypes.CDLL,
     t = np.linspace(0, 6, 61)
     want = stepped(wheel, start, t)
     orbit = Orbit(library, wheel, start, 1e-11)
-    assert orbit.kind == "folded"
+    assert orbit.kind == "unfolded"
     within(error(orbit(t), want), 1e-10, "error, scaled")
     beyond(error(Orbit(library, wheel, start, 1e-5)(t), want), 1e-9, "error at a loose tolerance, scaled")
 
@@ -107,7 +107,7 @@ LEAPING = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
 
 def test_excursions_below_zero_are_found_at_their_instants_however_late(library: ctypes.CDLL) -> None:
     orbit = Orbit(library, start=LEAPING, keep_contact=True)
-    assert orbit.kind == "folded"
+    assert orbit.kind == "unfolded"
     t = np.linspace(0, 12 * orbit.half_period, 20_001)
     N = orbit.read(t)[1]
     falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
@@ -138,7 +138,7 @@ def test_a_fall_right_behind_the_turning_point_counts_once(library: ctypes.CDLL)
     N = orbit.read(t)[1]
     falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
     turn = 1.2 * orbit.half_period
-    assert orbit.kind == "folded" and ((falls > turn) & (falls < turn + 0.01)).sum() == 1
+    assert orbit.kind == "unfolded" and ((falls > turn) & (falls < turn + 0.01)).sum() == 1
     found = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
     assert len(found) == len(falls) == 4
     assert (np.abs(falls - found) <= t[1]).all()
@@ -152,7 +152,7 @@ def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(libra
 
     def excess(psi_dot: float) -> float:
         orbit = turning(psi_dot)
-        turn = np.diff(orbit([0, orbit.half_period])[:, 4])[0] if orbit.kind == "folded" else np.nan
+        turn = np.diff(orbit([0, orbit.half_period])[:, 4])[0] if orbit.kind == "unfolded" else np.nan
         return float(turn - np.pi * np.round(turn / np.pi))
 
     def walked(psi_dot: float) -> Array:
@@ -189,7 +189,7 @@ def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_f
 def test_next_to_a_steady_motion_the_nutation_is_kept_or_too_small_to_matter(library: ctypes.CDLL, lean: float):
     start = Start(theta=np.pi / 2 + lean, phi_dot=-9.0)
     orbit = Orbit(library, start=start)
-    assert orbit.kind == ("steady" if lean < 1e-12 else "folded")
+    assert orbit.kind == ("steady" if lean < 1e-12 else "unfolded")
     t = np.linspace(0, 6, 31)
     within(error(orbit(t), stepped(Wheel(), start, t)), 1e-9, "error, scaled")
 
@@ -217,7 +217,7 @@ def test_what_is_taken_for_steady_swings_by_a_thousandth_of_the_tolerance(librar
 def test_a_long_nutation_beside_an_unstable_rest_folds(library: ctypes.CDLL, off: float) -> None:
     start = Start(theta=np.pi / 2 + off, phi_dot=-2.5)
     orbit = Orbit(library, start=start, tolerance=1e-11)
-    assert orbit.kind == "folded"
+    assert orbit.kind == "unfolded"
     t = np.linspace(0, 2.5 * orbit.half_period, 41)
     bound = 1e-6 * (1e-2 / off) ** 0.5  # near the rest all errors grow, the reference's too
     within(error(orbit(t), stepped(Wheel(), start, t)), bound, "error, scaled")
@@ -248,7 +248,7 @@ BROKEN += [(name, STEADY) for name, (place, _) in DISTURBANCES.items() if place 
 def built_with(library: ctypes.CDLL, start: Start, place: int, added: Callable, sizes: tuple[float, ...]) -> list[str]:
     """What comes of the orbit under disturbances of these sizes, the last below what the tolerance resolves."""
     orbit = Orbit(library, start=start)
-    assert orbit.kind == ("steady" if start is STEADY else "folded")
+    assert orbit.kind == ("steady" if start is STEADY else "unfolded")
     kinds = [orbit.build(place, size, added) for size in sizes]
     return ["kept" if kind == orbit.kind else kind for kind in kinds]
 
