@@ -130,7 +130,7 @@ def test_what_it_does_now_can_be_read_beside_every_step_on_a_small_screen(live, 
         below = []
         for k in range(1, STEPS + 1):
             story(k)
-            live.evaluate("page.live.frame()")
+            live.evaluate("() => { page.live.frame(); document.querySelector('#live').scrollTop = 0; }")
             below.append(
                 max(live.evaluate(shown))
                 - live.evaluate("document.querySelector('#live').getBoundingClientRect().bottom")
