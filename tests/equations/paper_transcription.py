@@ -15,6 +15,7 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 
 import numpy as np
+from equations.pointwise import ACCELERATIONS
 from support import equations as eq
 
 PSI, THETA, PHI = 3, 4, 5  # places of the angles in (25)
@@ -327,6 +328,16 @@ def omega_z_dot(paper: Paper, x: np.ndarray, scenes: np.ndarray) -> np.ndarray:
     """Derivative of (21); zero by definition while the spin is held."""
     rate = (paper.Q[:, 2, :] * x[:, 3:6] + paper.Q_dot[:, 2, :] * paper.beta_dot).sum(axis=1)
     return np.where(scenes["friction"]["kind"] == eq.HELD, 0, rate)
+
+
+def dynamics_of(paper: Paper, x: np.ndarray, scenes: np.ndarray) -> np.ndarray:
+    """WheelDynamics from what `solved` returns; tau is its last column."""
+    out = eq.table(eq.Dynamics, len(x))
+    for i, name in enumerate(ACCELERATIONS):
+        out[name] = x[:, i]
+    out["lambda_"], out["tau"] = x[:, 6:9], x[:, -1]
+    out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
+    return out
 
 
 def stabilised_rate(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:

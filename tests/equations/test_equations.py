@@ -6,8 +6,8 @@ of the paper and the rotation-matrix reference under reference/ judge the produc
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Paper, omega_z_dot, papers_state, solved
-from equations.pointwise import ACCELERATIONS, distance, draw, dynamics, referenced, relative
+from equations.paper_transcription import Paper, dynamics_of, papers_state, solved
+from equations.pointwise import distance, draw, dynamics, referenced, relative
 from support import equations as eq
 from support.bounds import EPSILON, beyond, within
 
@@ -106,13 +106,7 @@ def test_stop_spin_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(form
 def transcribed(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
     """WheelDynamics at the product's states y from the numpy transcription of (24)."""
     paper = Paper(scenes["wheel"], papers_state(y))
-    x = solved(paper, scenes)
-    out = eq.table(eq.Dynamics, len(x))
-    for i, name in enumerate(ACCELERATIONS):
-        out[name] = x[:, i]
-    out["lambda_"], out["tau"] = x[:, 6:9], x[:, 9]
-    out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
-    return out
+    return dynamics_of(paper, solved(paper, scenes), scenes)
 
 
 def test_multibody_solves_the_papers_system_24_for_any_inertia(law: int) -> None:

@@ -7,7 +7,7 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Carried, omega_z_dot, papers_state, solved
+from equations.paper_transcription import Carried, dynamics_of, papers_state, solved
 from equations.pointwise import ACCELERATIONS, Table, draw
 from support import equations as eq
 from support.bounds import beyond, within
@@ -39,12 +39,7 @@ def transcribed(scenes: Table, motions: Table, slides: bool) -> tuple[Table, Tab
         mu = np.where(N > 0, scenes["mu_slide"], 0)
         paper.slip_of = mu, motions["psi"] + np.arctan2(motions["slip_y"], motions["slip_x"])
     x = solved(paper, scenes)
-    out = eq.table(eq.Dynamics, len(x))
-    for i, name in enumerate(ACCELERATIONS):
-        out[name] = x[:, i]
-    out["lambda_"], out["tau"] = x[:, 6:9], x[:, 11]
-    out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
-    return out, x[:, 9:11]
+    return dynamics_of(paper, x, scenes), x[:, 9:11]
 
 
 def apart(found: Table, want: Table, scenes: Table) -> float:
