@@ -141,8 +141,7 @@ Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
 }
 
 bool can_stiffen(const Setup& setup, const InForce& now) {
-  const bool asked = setup.method == automatic_method && !setup.exchanged;
-  return asked && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
+  return !setup.exchanged && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
 }
 
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
