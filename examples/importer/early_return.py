@@ -1,4 +1,4 @@
-"""fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated: the wheel falls flat at 0.59275 s, within a step."""
+"""fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated: the wheel lies flat at 0.59275 s, within a step."""
 
 from fmpy.fmi1 import FMICallException
 from unit import read, verdict, wheel

@@ -1,6 +1,6 @@
 """The map of fates: start angle theta against spin phi_dot, without and with rolling friction; 10 s each.
 
-`./scripts/study fates` runs it and draws the map; `--publish` writes its data and its figure into docs/.
+`./scripts/study fates` runs it and draws the map; `--publish` writes the figure into docs/figures.
 """
 
 from pathlib import Path
@@ -46,7 +46,7 @@ def draw(small: xr.Dataset, stem: Path) -> Path:
         ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.set_xlim(0, 50 * faster)
         white = {"color": "white", "rotation": 90, "ha": "center", "va": "center", "fontsize": 8}
-        ax.text(0.012 * faster, 45, "no spin: falls flat", **white)
+        ax.text(0.012 * faster, 45, "no spin: lies flat", **white)
         ax.text(limit * 0.82, 22, "limit of upright rolling", **white)
     axes[1].text(35 * faster, 9, "lifts\noff", **(white | {"rotation": 0, "linespacing": 0.9}))
     return style.save_png(fig, stem.with_suffix(".png"))

@@ -1,6 +1,6 @@
 """How much friction rolling without slip needs: the largest mu_required within 10 s, and where it exceeds 0.8.
 
-`./scripts/study grip` runs it and draws the map; `--publish` writes its data and its figure into docs/.
+`./scripts/study grip` runs it and draws the map; `--publish` writes the figure into docs/figures.
 """
 
 from pathlib import Path

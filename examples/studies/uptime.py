@@ -1,6 +1,6 @@
 """How long a wheel stays up: started at 89 degrees with four spins, for a rolling friction s from 0 to 0.1 m.
 
-`./scripts/study uptime` runs it and draws it; `--publish` writes its data and its figure into docs/.
+`./scripts/study uptime` runs it and draws it; `--publish` writes the figure into docs/figures.
 It counts as up until it leans by more than 30 degrees. The spin of an upright wheel falls by s m g / (J_z + m R^2) per
 second; dashed: the time at which it comes down to the limit of upright rolling.
 """

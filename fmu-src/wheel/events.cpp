@@ -86,7 +86,7 @@ bool always_ends(const Setup&) { return true; }
 // N over the weight.
 double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
 // N is infinite where the wheel jams.
-double wedging_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
+double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // rad from where the wheel counts as flat.
 double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
@@ -125,12 +125,12 @@ constexpr EventRow event_rows[] = {
      .observed = "the ground pulls; without keep_contact the wheel would lift off"},
     {.event = Event::jams,
      .can_occur = is_sliding,
-     .quick_value = wedging_left,
+     .quick_value = jam_left,
      .exchanged = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
      .limit = [](const InForce& now) { return now.scene.mu_slide; }},
-    {.event = Event::fell_flat,
+    {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = height_of,
      .ends = always_ends,

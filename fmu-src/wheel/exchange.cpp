@@ -35,7 +35,7 @@ double margin_at(const EventRow& row, const Setup& setup, const Run& run, double
     const Rates rates = rates_of(setup, run.in_force.scene, run.y);
     for (int i = 0; i < state_count; ++i) y[i] += ahead * rates.y_dot[i];
   }
-  if (row.event != Event::fell_flat) keep_above_ground(setup, y);
+  if (row.event != Event::lies_flat) keep_above_ground(setup, y);
   return margin_of(row, setup, run.in_force, run.t + ahead, y);
 }
 

@@ -84,7 +84,7 @@ void log_ending(Wheel& wheel, Event event) {
   const Setup& setup = wheel.setup;
   if (wheel.endings++ >= logged_one_by_one) return;
   constexpr double rounding = 1e-15;  // of the cosine of a right angle
-  if (event == Event::fell_flat && setup.tilting == 0 &&
+  if (event == Event::lies_flat && setup.tilting == 0 &&
       std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
     wheel.reporter.log(Topic::warning,
                        "The wheel started exactly upright: unless a load tipped it, rounding decided when and to which "

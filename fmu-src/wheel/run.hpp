@@ -41,7 +41,7 @@ enum class Event : int {
   slip_ends,        // the slip falls to zero
   lost_contact,     // N falls below zero, or rises above it while the ground pulls
   jams,             // no N satisfies the equations of the sliding wheel
-  fell_flat,
+  lies_flat,
   count
 };
 inline constexpr int event_count = static_cast<int>(Event::count);

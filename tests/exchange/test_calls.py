@@ -193,7 +193,7 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         x[STATES.index("theta")] = theta
         wheel.place(0.1, x)
         assert np.isfinite(wheel.derivatives()).all()
-        assert wheel.indicator("fell_flat") <= 0 and wheel.wants_event()
+        assert wheel.indicator("lies_flat") <= 0 and wheel.wants_event()
         assert wheel.event().terminateSimulation
         # Some importers enter continuous-time mode before they heed the event info: the wheel can be read there,
         # and has still ended.
@@ -220,7 +220,7 @@ def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(
         assert wheel.ask("GetEventIndicators", z, len(z)) == wheel.ask("GetDerivatives", [0] * 8, 8) == status
         assert np.isfinite(z).all() == (status == OK)
         if status == OK:
-            assert (z[INDICATORS.index("fell_flat")] <= 0) == (theta > np.pi)
+            assert (z[INDICATORS.index("lies_flat")] <= 0) == (theta > np.pi)
         else:
             assert any(sentence.endswith("the indicators are not finite.") for sentence in wheel.sentences)
 

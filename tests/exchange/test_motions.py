@@ -71,7 +71,7 @@ def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(libra
     within(late / tolerance, 1e4, "instants of the transitions over tolerance, s")
 
 
-def test_a_released_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library) -> None:
+def test_a_released_wheel_lies_flat_at_the_instant_of_the_closed_form(library: Library) -> None:
     run, _, sentences = moved(library, [2.0], phi_dot_start=0.0)
     assert "lies flat" in sentences[-1]
     within(abs(run.ended - fall_time(Wheel(), 5 * pi / 12, 1e-7)), 3e-11, "instant at which it lies flat, s")

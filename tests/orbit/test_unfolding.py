@@ -182,7 +182,7 @@ def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_f
     for phi_dot in (0.0, -0.3, -1.0, -2.0, *(-critical_spin(Wheel()) * (1 + above) for above in (1e-9, 1e-4))):
         orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
         assert orbit.kind == "refused" or orbit.steps > 100  # a nutation that begins by rounding takes its time
-    assert Orbit(library, start=Start(theta=np.pi / 2, phi_dot=0.0)).kind == "ended"  # it falls flat
+    assert Orbit(library, start=Start(theta=np.pi / 2, phi_dot=0.0)).kind == "ended"  # it lies flat
 
 
 @pytest.mark.parametrize("lean", [1e-13, 1e-10, 1e-8, 1e-4])

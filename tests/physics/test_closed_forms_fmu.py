@@ -36,7 +36,7 @@ def test_a_standing_wheel_tips_by_the_hyperbolic_cosine(library: Library) -> Non
     beyond(gap(THIN), 0.1, "lean of a disc, relative")
 
 
-def test_the_wheel_falls_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
+def test_the_wheel_lies_flat_at_the_instant_of_the_closed_form(library: Library, formulation: int) -> None:
     within(exact.fall_error(library, formulation, Wheel()), 4e-10, "instant at which it lies flat, s")
     beyond(exact.fall_error(library, formulation, THIN), 1e-2, "instant at which a disc lies flat, s")
 

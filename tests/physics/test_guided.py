@@ -182,7 +182,7 @@ def test_a_motor_spins_it_only_beyond_the_torque_that_the_road_holds(library: Li
     within(absolute_error([run["X_O_dot"][-1], run["omega_z"][-1]], [a, -spin]), bound, "speed, m/s, and spin, rad/s")
 
 
-def test_it_does_not_jam_where_tilting_is_what_wedges(library: Library) -> None:
+def test_a_guided_wheel_does_not_jam_where_a_tilting_one_does(library: Library) -> None:
     scene = SLIDES["jams"]
     start = {**scene.start, "theta_dot_start": 0.0}
     on_carrier = library.simulate([0.0, scene.duration], 1e-10, **start, guided=True)

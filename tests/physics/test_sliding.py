@@ -325,7 +325,7 @@ def test_a_wheel_on_the_upright_side_of_the_jam_is_pushed_back(library: Library)
     ("lift", {"theta_start": 0.4, "theta_dot_start": 7.0, "phi_dot_start": 0.0, "slip_y_start": 3.0, "mu_max": 0.3}),
     ("flat", {"theta_start": 1.2, "phi_dot_start": 0.0, "mu_max": 0.3}),
 ])  # fmt: skip
-def test_a_sliding_wheel_lifts_off_and_falls_flat_at_the_references_instants(library, kind, start) -> None:
+def test_a_sliding_wheel_lifts_off_and_lies_flat_at_the_references_instants(library, kind, start) -> None:
     scene = Scene({**start, "mu_slide": 0.3}, 3.0)
     ended = scene.solved([0.0, 3.0], flat=float(np.sin(1e-7))).ended
     assert ended and ended.kind.startswith(kind)

@@ -139,7 +139,7 @@ def falls(library: Library, tolerance: float, **values) -> tuple[float, int]:
     return run.end, run.counters["n_steps"]
 
 
-def test_however_tight_the_tolerance_a_wheel_that_slides_74_times_falls_flat_at_the_same_instant(library) -> None:
+def test_however_tight_the_tolerance_a_wheel_that_slides_74_times_lies_flat_at_the_same_instant(library) -> None:
     """Near theta = pi the rounding of theta is 4e-9 of the angle that is left, and tight steps are lost in it."""
     exact, _ = falls(library, 1e-13, **TO_ZERO)
     assert abs(falls(library, 1e-10, **{**TO_ZERO, "theta_dot_start": 0.4338})[0] - exact) > 1e-6
@@ -152,7 +152,7 @@ def test_however_tight_the_tolerance_a_wheel_that_slides_74_times_falls_flat_at_
 
 
 def braked_wheel(random: np.random.Generator) -> tuple[dict[str, float], Schedule]:
-    """Under a soft regularized law, thrown; a brake from 0.45 s on, under which most fall flat within 4 s."""
+    """Under a soft regularized law, thrown; a brake from 0.45 s on, under which most lie flat within 4 s."""
     a, b, c = random.uniform(0.2, 0.5, 3)
     mu = random.uniform(0.15, 0.4)
     start = {"r": random.uniform(0.1, 0.2), "J_x": b + c, "J_y": a + c, "J_z": a + b, "mu_max": mu}
@@ -163,7 +163,7 @@ def braked_wheel(random: np.random.Generator) -> tuple[dict[str, float], Schedul
     return start, Schedule(((0.0, {}), (0.45, {"M_brake": float(random.uniform(10, 25))})))
 
 
-def test_the_multibody_form_slides_and_falls_flat_as_the_reduced_one_in_hardly_more_steps(library: Library) -> None:
+def test_the_multibody_form_slides_and_lies_flat_as_the_reduced_one_in_hardly_more_steps(library: Library) -> None:
     """psi_dot grows as 1 / theta, and 1e-7 rad from flat accelerations of 1e8 g cancel in it."""
     random, ends = np.random.default_rng(61), []
     for k in range(10):
@@ -174,7 +174,7 @@ def test_the_multibody_form_slides_and_falls_flat_as_the_reduced_one_in_hardly_m
         assert (runs[0].end is None) == (runs[1].end is None)
         if runs[0].end is not None and runs[1].end is not None:
             ends.append(abs(runs[1].end - runs[0].end))
-    beyond(len(ends), 4, "wheels that fall flat")
+    beyond(len(ends), 4, "wheels that lie flat")
     within(max(ends), 3e-6, "largest distance of the instants at which they lie flat, s")
     within(float(np.median(ends)), 3e-8, "middle distance of those instants, s")
 

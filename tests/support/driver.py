@@ -27,7 +27,7 @@ CHOICES |= {"friction_law": {"exact": 1, "regularized": 2}}
 CHOICES |= {"method": {"automatic": 1, "adams": 2, "bdf": 3, "runge_kutta": 4}}
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "theta_dot", "psi_dot", "omega_z")
 DERIVATIVES = ("X_O_dot", "Y_O_dot", "psi_dot", "theta_dot", "phi_dot", "theta_ddot", "psi_ddot", "omega_z_dot")
-INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "fell_flat")  # the first of the events of model exchange
+INDICATORS = ("spin_changes", "lost_grip", "lost_contact", "lies_flat")  # the first of the events of model exchange
 
 Array = NDArray[np.float64]
 Value = float | str | bool

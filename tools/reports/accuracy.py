@@ -28,7 +28,7 @@ FORMS = {"reduced": 2, "multibody": 3}
 MOTIONS = {
     "upright rolling slows down linearly: ω_z, rad/s": lambda fmu, form: exact.straight_error(fmu, form, 0.03, ROUGH),
     f"and stops at {STOP:.6f} s: instant, s": lambda fmu, form: stop_error(fmu, form),
-    "released from rest it falls flat: instant, s": lambda fmu, form: exact.fall_error(fmu, form, TORUS),
+    "released from rest it lies flat: instant, s": lambda fmu, form: exact.fall_error(fmu, form, TORUS),
     "a light rim lifts off while falling: s, rad": lambda fmu, form: exact.lift_off_error(fmu, form, 0.0),
     "steady circle, thin disc, 5 s": lambda fmu, form: exact.circle_error(fmu, THIN, THIN, form, 1.0, 1.1),
     "steady circle, torus, 5 s": lambda fmu, form: exact.circle_error(fmu, TORUS, TORUS, form, 1.0, 1.1),

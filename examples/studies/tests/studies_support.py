@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from study import Study
 
-# 24 wheels of every fate: impossible ones, some that fall flat, one that lifts off, and those that roll on.
+# 24 wheels of every fate: impossible ones, some that lie flat, one that lifts off, and those that roll on.
 FATES = Study(
     grid={"theta_start": np.radians([15, 75, 200]), "s": [0.0, 0.03], "phi_dot_start": [-2, 0.0, -6.0, -40.0]},
     measures={"plane": "lowest", "lowest": "min(theta)", "down": "first(theta < 30deg)", "energy": "E"},
