@@ -162,7 +162,7 @@ def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) ->
     figures["shown"] = [f"{number(float(f.measured))} {f.unit}".strip() for f in figures.itertuples()]
     asked = figures[figures["asked"].notna()]
     met = asked["measured"] <= asked["asked"]
-    bounds = [f"{'≤' if f.asked else '='} {number(f.asked)} {f.unit}".strip() for f in asked.itertuples()]
+    bounds = [f"{'≤' if f.asked else '='} {number(f.asked)}" for f in asked.itertuples()]
     measured = asked["shown"].where(met, "**" + asked["shown"] + "**")
     table = {"figure": asked["what"], "required": bounds, "measured": measured}
     missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
