@@ -1,8 +1,8 @@
-// One step by sweeps: fixed-point iteration for all states but the one that settles, Newton's method for that one.
+// One step by sweeps: fixed-point iteration for all states but those that settle, Newton's method for each of these.
 //
 // y_j = y_start + h sum of integral_jk f_k, f_j = f(t_j, y_j), at the points t_j; in the settling state u_j f_j =
-// turn_j. Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5; the dense output is the collocation
-// polynomial.
+// turn_j (u_j = 1 without a speed). Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5; the dense
+// output is the collocation polynomial.
 #include "collocation.hpp"
 
 #include <Eigen/LU>
@@ -13,6 +13,7 @@ namespace {
 
 using Square = Eigen::Matrix<double, radau_points, radau_points, Eigen::RowMajor>;
 using Row = Eigen::Matrix<double, 1, max_states>;
+using Column = Eigen::Matrix<double, radau_points, 1>;
 using Rates = Eigen::Matrix<double, radau_points, max_states, Eigen::RowMajor>;
 
 // s = (t - end) / h of the points: c - 1, c the zeros of P_6 - P_5 on (0, 1], P Legendre's polynomials.
@@ -57,8 +58,8 @@ constexpr Table radau = make_table();
 // The error that one step may make, as a fraction of the tolerance of the whole solution.
 constexpr double part_of_tolerance = 0.2;
 // How far the sweeps may be from their limit, over the error of the step; the error of the polynomial against its last
-// term.
-constexpr double distance = 0.1, error_of_last = 0.005;
+// term, which falls less fast where the turning is steep.
+constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.05;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
 // The shortest step, in roundings of time: the settling state may do in it what it will, the others hardly move.
@@ -72,28 +73,38 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// Newton's matrix for the rates of the settling state at the points, at the predicted states, for all sweeps.
+// Newton's matrix for the rates of the settling state at the points.
 struct Collocation::Newton {
-  Eigen::PartialPivLU<Square> matrix;
+  Eigen::PartialPivLU<Square> matrix[2];
 };
 
 Collocation::Newton Collocation::prepare(const Problem& problem, const Step& step) const {
-  const auto [state, speed, slope] = problem.settling;
   const Eigen::Map<const Square> integral(&radau.integral[0][0]);
+  const Eigen::Map<const Rates> f(&f_[0][0]);
+  const auto along = [&](int i) -> Column { return (size_ * integral * f.col(i)).array() + step.y_start[i]; };
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
-  Square matrix = size_ * slope(problem.owner, step.end, y_end.data()) * integral;
-  matrix.diagonal() -= size_ * integral * Eigen::Map<const Rates>(&f_[0][0]).col(speed);
-  matrix.diagonal().array() -= step.y_start[speed];
-  return {matrix.partialPivLu()};
+  Newton newton;
+  for (int i = 0; i < problem.settling_count; ++i) {
+    const auto& [state, speed, slopes_of] = problem.settling[i];
+    const Column values = along(state);
+    Column slopes;
+    slopes_of(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data());
+    Square matrix = size_ * slopes.asDiagonal() * integral;
+    if (speed < 0)
+      matrix.diagonal().array() -= 1;
+    else
+      matrix.diagonal() -= along(speed);
+    newton.matrix[i].compute(matrix);
+  }
+  return newton;
 }
 
 // The change of the states by one sweep, in units of the weights; infinite where rates are not finite.
 double Collocation::sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters,
                           Step* step) {
-  const int turned = problem.settling.state;
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
-  Eigen::Matrix<double, radau_points, 1> turning;
+  Column turning[2];
   for (int j = 0; j < radau_points; ++j) {
     const Row y = state_at(j, *step, size_, f_);
     const double t = step->start + (1 + places[j]) * size_;
@@ -101,9 +112,15 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
-    turning[j] = y[problem.settling.speed] * (f(j, turned) - f_[j][turned]);
+    for (int i = 0; i < problem.settling_count; ++i) {
+      const auto& [state, speed, slopes_of] = problem.settling[i];
+      turning[i][j] = (speed < 0 ? 1 : y[speed]) * (f(j, state) - f_[j][state]);
+    }
   }
-  f.col(turned) = before.col(turned) - newton.matrix.solve(turning);
+  for (int i = 0; i < problem.settling_count; ++i) {
+    const int state = problem.settling[i].state;
+    f.col(state) = before.col(state) - newton.matrix[i].solve(turning[i]);
+  }
   const Rates change = size_ * (f - before);
   double largest = 0;
   for (int j = 0; j < radau_points; ++j) largest = std::max(largest, weighted_norm<max_states>(&change(j, 0), weights));
@@ -131,12 +148,14 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 
 // The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
-  const Newton newton = prepare(problem, *step);
+  Newton newton = prepare(problem, *step);
   double change = INFINITY;
   ++counters->jacobians;
   bool converged = false;
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
+    // A steep turning bends between two sweeps.
+    if (sweeps > 0 && problem.is_steep()) newton = prepare(problem, *step);
     change = sweep(problem, weights, newton, counters, step);
     const bool falls = sweeps < most_sweeps && change < before;
     if (!falls && !(change < 1)) return INFINITY;
@@ -144,7 +163,7 @@ double Collocation::try_size(const Problem& problem, const double* weights, Coun
     converged = !falls || change < distance || (sweeps > 0 && change * change < distance * (before - change));
   }
   const Row last =
-      error_of_last * size_ *
+      (problem.is_steep() ? error_of_steep : error_of_last) * size_ *
       (Eigen::Map<const Eigen::Matrix<double, 1, radau_points>>(radau.last) * Eigen::Map<Rates>(&f_[0][0]));
   return weighted_norm<max_states>(last.data(), weights);
 }
@@ -168,7 +187,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
       break;
     }
     const bool is_shortest = size_ <= shortest;
-    if (is_shortest) weights[problem.settling.state] = 0;
+    if (is_shortest) weights[problem.settling[0].state] = 0;
     const double error = try_size(problem, weights, counters, step);
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
@@ -180,8 +199,8 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);
     // The settling state changes as 1 / speed.
-    const int speed = problem.settling.speed;
-    liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
+    const int speed = problem.settling[0].speed;
+    if (speed >= 0) liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
     failure_ = nullptr;
     return true;
   }

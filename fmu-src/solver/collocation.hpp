@@ -1,6 +1,6 @@
-// Collocation at the six points of Radau IIA, order 11: for a problem in which one state settles, however fast,
-// where its turning vanishes (Problem::settling). The error of the polynomial is kept below the tolerance; that at the
-// end of the step, of order 11, is far smaller.
+// Collocation at the six points of Radau IIA, order 11: for a problem in which one state or two settle,
+// however fast, where their turning vanishes (Problem::settling). The error of the polynomial is kept below the
+// tolerance; that at the end of the step, of order 11, is far smaller.
 //
 // From step to step it keeps the wanted size of the next step, and the rates of the last one, which predict the next.
 #pragma once
@@ -15,7 +15,7 @@ class Collocation final : public Engine {
  public:
   bool start(const Problem& problem) override {
     known_ = false;
-    liked_ = problem.longest_step;
+    liked_ = std::fmin(problem.first_step, problem.longest_step);
     return true;
   }
   void limit_first_step(double dt) { liked_ = std::fmin(liked_, dt); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 namespace solver {
 
@@ -23,11 +24,12 @@ struct Watched {
   int state = -1;  // the only one that `value` reads; below zero: it reads all
 };
 
-// A state whose rate is turning / y[speed] + ...: where the speed is small, it settles at once where the turning
-// vanishes.
+// A state whose rate is turning / y[speed] + ..., or the turning alone where `speed` is below zero: where the speed is
+// small, or the turning steep, it settles at once where the turning vanishes.
 struct Settling {
   int state, speed;
-  double (*slope)(void* owner, double t, const double* y);  // of the turning by the state
+  // Slopes of the turning by the state, where y has these values of it.
+  void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes);
 };
 
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
@@ -48,13 +50,18 @@ struct Problem {
   // the watched functions have a simple shape. Returns their number, at most max_extremes; null where inputs are
   // constant.
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
-  double near;          // margins below this are near zero
-  double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
-  Settling settling;    // for collocation alone
-  bool passage;      // a few short steps between two other problems: Runge-Kutta keeps a step size of its own for them
-  double share = 1;  // of the error that a step may otherwise make
+  double near;           // margins below this are near zero
+  double longest_step;   // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
+  Settling settling[2];  // for collocation alone
+  int settling_count;
+  double first_step;  // s, > 0: longest of collocation, whose points leave out the start
+  double share = 1;   // of the error that a step may otherwise make
 
   // At most max_watched of them.
+  // At most two.
+  void settle(const Settling& state) { settling[settling_count++] = state; }
+  // Whether the last of them turns steeply.
+  bool is_steep() const { return settling_count > 0 && settling[settling_count - 1].speed < 0; }
   void watch(const Watched& function) { watched[watched_count++] = function; }
 };
 

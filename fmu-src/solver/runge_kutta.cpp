@@ -141,7 +141,7 @@ struct RungeKutta::Work {
       engine.margin_ = evaluate(0, step.start, step.y_start);
     if (std::isnan(engine.margin_)) return "the rates of the states are not finite";
     problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
-    double& liked = engine.liked_[problem.passage];
+    double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
     return accept_step(stop, &liked);
   }
@@ -233,10 +233,6 @@ bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters
 void RungeKutta::expand(const Problem& problem, Step* step) {
   Counters uncounted = {};  // else the counts would depend on the instants that are read
   with_work(problem, &uncounted, step, [](auto work) { work.expand(); });
-}
-
-void RungeKutta::visit_sizes(support::Archive& archive) {
-  for (double& size : liked_) archive.range(size, 0, archive.greatest);
 }
 
 void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step& step) {

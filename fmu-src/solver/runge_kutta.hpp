@@ -18,8 +18,8 @@ class RungeKutta final : public Engine {
   // costs the same whatever was read.
   void expand(const Problem& problem, Step* step) override;
   void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
-  // The sizes that are kept while another engine steps.
-  void visit_sizes(support::Archive& archive);
+  // What is kept while another engine steps.
+  void visit_size(support::Archive& archive) { archive.range(liked_, 0, archive.greatest); }
 
   // The first step after the last start is at most dt, s.
   void limit_first_step(double dt) { limit_ = dt; }
@@ -30,12 +30,12 @@ class RungeKutta final : public Engine {
   template <class Body>
   auto with_work(const Problem& problem, Counters* counters, Step* step, const Body& body);
 
-  double liked_[2] = {};   // size of the next step, s, outside and inside of a passage; 0: none was made
-  double limit_ = 0;       // of the first step after the last start, s; 0: none
-  double size_ = 0;        // of the last step, s
-  double last_error_ = 0;  // of the last step, in units of the weights; 0: there was none
-  double margin_ = 0;      // at the end of the last step
-  bool has_end_ = false;   // stage 12, at the end of the last step, is known
+  double liked_ = 0;                           // size of the next step, s; 0: none was made
+  double limit_ = 0;                           // of the first step after the last start, s; 0: none
+  double size_ = 0;                            // of the last step, s
+  double last_error_ = 0;                      // of the last step, in units of the weights; 0: there was none
+  double margin_ = 0;                          // at the end of the last step
+  bool has_end_ = false;                       // stage 12, at the end of the last step, is known
   alignas(16) double f_[16][max_states] = {};  // rates at the stages of the last step
 };
 

@@ -148,7 +148,7 @@ void Solver::visit(support::Archive& archive) {
   archive.count(fallen_, 0, std::max(problem_.watched_count - 1, 0));
   archive.numbers(values_, max_watched);
   for (long long* count : counters_.all()) archive.tally(*count);
-  runge_kutta_.visit_sizes(archive);
+  runge_kutta_.visit_size(archive);
   if (archive.fits()) engine().visit(archive, problem_, step_);
 }
 

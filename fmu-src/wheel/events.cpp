@@ -10,27 +10,16 @@
 namespace wheel {
 namespace {
 
-bool is_passing(const Setup&, const InForce& now) { return now.layer == Layer::passing; }
-
 // An input that varies can make a regularized law stiff.
 bool has_layer_ahead(const Setup& setup, const InForce& now) {
-  return now.layer != Layer::none || (now.inputs.varies && can_stiffen(setup, now));
-}
-
-// What holding leaves unused.
-double holding_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  return held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
-}
-
-double holding_lacks(const Setup& setup, const InForce& now, double t, const double* y) {
-  return -holding_left(setup, now, t, y);
+  return now.layered || (now.inputs.varies && can_stiffen(setup, now));
 }
 
 double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
-  if (now.layer == Layer::none) return softness_of(setup, now.scene_at(t), y);
+  if (!now.layered) return softness_of(setup, now.scene_at(t), y);
   const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
-  const bool outside = now.layer == Layer::outside;
-  return (outside ? now.scene.friction.sigma * omega_z - edge : edge - std::fabs(omega_z)) / setup.rate_scale;
+  const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
+  return (now.in_layer() ? inside : outside) / setup.rate_scale;
 }
 
 // How far the mode of friction is from its end: rolling, omega_z over the wheel's own rate; held, what holding leaves
@@ -38,14 +27,16 @@ double way_to_layer(const Setup& setup, const InForce& now, double t, const doub
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
-  return law == WHEEL_HELD || (law == WHEEL_ROLLING && now.layer == Layer::none);
+  return law == WHEEL_HELD || (law == WHEEL_ROLLING && !now.layered);
 }
 
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
   const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
-  if (law.kind == WHEEL_HELD) return std::fabs(spin) > spin_error ? -std::fabs(spin) : holding_left(setup, now, t, y);
+  if (law.kind == WHEEL_HELD)
+    return std::fabs(spin) > spin_error ? -std::fabs(spin)
+                                        : held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
   return -now.scene.load.brake / setup.moment_scale;
 }
 
@@ -93,16 +84,16 @@ double height_of(const Setup& setup, const double* y, double) {
 }
 
 // Model exchange leaves a stiff law to the caller's solver.
-constexpr EventRow layer_event(Event event, decltype(EventRow::can_occur) can_occur, decltype(EventRow::value) value) {
-  const auto follow = [](const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); };
-  return {.event = event, .can_occur = can_occur, .value = value, .exchanged = false, .follow = follow};
-}
+void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
 
 }  // namespace
 
 constexpr EventRow event_rows[] = {
-    layer_event(Event::sticks_in_layer, is_passing, holding_lacks),
-    layer_event(Event::changes_layer, has_layer_ahead, way_to_layer),
+    {.event = Event::changes_layer,
+     .can_occur = has_layer_ahead,
+     .value = way_to_layer,
+     .exchanged = false,
+     .follow = change_layer},
     {.event = Event::spin_changes,
      .can_occur = can_change_spin,
      .value = spin_left,

@@ -24,15 +24,10 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
-void enter_layer(const Setup& setup, const WheelScene& scene, const double* y, InForce& now) {
+void decide_layer(const Setup& setup, const double* y, InForce& now) {
   const double omega_z = y[setup.formulation->spin_index];
-  if (std::fabs(omega_z) > layer_edge(setup)) {
-    now.layer = Layer::outside;
-    now.scene.friction = rolling(omega_z > 0);
-  } else {
-    now.layer = held_at(setup, scene, y).reserve >= 0 ? Layer::sticking : Layer::passing;
-    now.scene.friction = regularized(setup);
-  }
+  now.layered = true;
+  now.scene.friction = std::fabs(omega_z) > layer_edge(setup) ? rolling(omega_z > 0) : regularized(setup);
 }
 
 // The laws to try where the wheel starts to slide: without spin, with rolling friction or brake, first that it is held.
@@ -51,7 +46,7 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   apply_loads(setup, road_asked(demand), t, demand.inputs, now);
-  now.layer = Layer::none;
+  now.layered = false;
   decide_contact(setup, t, y, now);
 }
 
@@ -81,7 +76,7 @@ void decide_law(const Setup& setup, double t, const double* y, InForce& now, boo
   scene.friction = released ? released_from(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
   const bool stiff = can_stiffen(setup, now) && softness_of(setup, scene, y) < 0;
-  if (stiff || now.layer != Layer::none) enter_layer(setup, scene, y, now);
+  if (stiff || now.layered) decide_layer(setup, y, now);
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
@@ -141,13 +136,13 @@ Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
 }
 
 bool can_stiffen(const Setup& setup, const InForce& now) {
-  return !setup.exchanged && now.layer == Layer::none && now.scene.friction.kind == WHEEL_REGULARIZED;
+  return !setup.exchanged && !now.layered && now.scene.friction.kind == WHEEL_REGULARIZED;
 }
 
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
 // with the wheel's own time scale; below the limit DOP853 alone is faster (docs/results/stability.md).
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
-  constexpr double stiff = 1000;
+  constexpr double stiff = 500;
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
   const double N = std::max(setup.weight, rates_of(setup, scene, y).N);

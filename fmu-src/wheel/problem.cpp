@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "events.hpp"
+#include "law.hpp"
 #include "wheel.hpp"
 
 namespace wheel {
@@ -63,12 +64,27 @@ double margin(void* owner, int event, double t, const double* y) {
 }
 
 // Of |u| chi_dot by the direction chi of the slip.
-double slope_of_turning(void* owner, double t, const double* y) {
+void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
   setup.sliding->reduce(y, reduced);
-  return -wheel_slip(&scene, reduced, y[setup.sliding->slip_index + 1]).settling;
+  std::fill_n(slopes, chi.size(), -wheel_slip(&scene, reduced, chi.back()).settling);
+}
+
+// Of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment forward and backward.
+void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes) {
+  const Setup& setup = wheel_of(owner).setup;
+  WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
+  double rates[2] = {};
+  for (const int forward : {0, 1}) {
+    scene.friction = {WHEEL_ROLLING, forward ? 1.0 : -1.0, 0};
+    rates[forward] = rates_of(setup, scene, y).y_dot[formulation_of(setup, scene).spin_index];
+  }
+  for (const double omega : omega_z) {
+    const double part = std::tanh(omega / setup.omega_s);
+    *slopes++ = (rates[1] - rates[0]) / 2 * (1 - part * part) / setup.omega_s;
+  }
 }
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
@@ -90,8 +106,14 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  problem.passage = now.layer == Layer::passing;
-  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slope_of_turning};
+  if (now.slides()) problem.settle({setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning});
+  problem.first_step = problem.longest_step;
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) {
+    const int spin = formulation_of(setup, now.scene).spin_index;
+    problem.settle({spin, -1, slopes_of_spin});
+    const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
+    if (now.layered) problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
+  }
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;
@@ -110,9 +132,7 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
-  const bool regularized = now.scene.friction.kind == WHEEL_REGULARIZED;
-  if (now.layer == Layer::sticking || (setup.method == bdf_method && regularized)) return solver::Method::bdf;
-  if (now.slides()) return solver::Method::collocation;
+  if (now.slides() || now.in_layer()) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

@@ -34,21 +34,16 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 // at the same instant the later one counts.
 enum class Event : int {
   none,
-  sticks_in_layer,  // omega_z begins to stick in the layer of a stiff regularized law
-  changes_layer,    // omega_z enters or leaves that layer, or the law becomes so steep that it has one
-  spin_changes,     // omega_z reaches zero, or friction and brake can no longer hold it there
-  lost_grip,        // the wheel needs a friction coefficient above mu_max
-  slip_ends,        // the slip falls to zero
-  lost_contact,     // N falls below zero, or rises above it while the ground pulls
-  jams,             // no N satisfies the equations of the sliding wheel
+  changes_layer,  // omega_z enters or leaves the layer of a stiff regularized law, or the law becomes so steep
+  spin_changes,   // omega_z reaches zero, or friction and brake can no longer hold it there
+  lost_grip,      // the wheel needs a friction coefficient above mu_max
+  slip_ends,      // the slip falls to zero
+  lost_contact,   // N falls below zero, or rises above it while the ground pulls
+  jams,           // no N satisfies the equations of the sliding wheel
   lies_flat,
   count
 };
 inline constexpr int event_count = static_cast<int>(Event::count);
-
-// Where omega_z stands in the layer of a stiff regularized law: outside of it, where the law is the exact one; on its
-// way through; or kept inside by friction and brake, where alone the motion is stiff.
-enum class Layer : int { none, outside, passing, sticking };
 
 // The road, which may change during a run. Its variables stand together, in this order.
 struct Road {
@@ -69,9 +64,10 @@ struct InForce {
   // `below`, `guided` from the setup. Without a law until one is decided; the wheel rolls.
   WheelScene scene = {};
   Inputs inputs;
-  Layer layer = Layer::none;
+  bool layered = false;          // a regularized law so steep that it is the exact one but in its layer
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
 
+  bool in_layer() const { return layered && scene.friction.kind == WHEEL_REGULARIZED; }
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
   bool pulls() const { return is_below(Event::lost_contact); }
   void set_below(Event event, bool is) {

@@ -88,8 +88,7 @@ double value_of(Wheel& wheel, unsigned variable);
 solver::Problem problem_of(Wheel& wheel);
 // What follows from an event for the motion alone: what is in force is changed, nothing is counted or logged.
 solver::Consequence pass_on_orbit(void* wheel, int event, double t, double* y);
-// What solves the motion that is not unfolded. CVODE's history and Jacobian do not follow a direction of slip that
-// turns ever faster: collocation solves a slide.
+// What solves the motion that is not unfolded: collocation where the direction of a slip or omega_z settles at once.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 // logbook.cpp: what a run counts and logs: events that are observed, changes of the friction and of the contact, its

@@ -81,7 +81,7 @@ def test_stop_time_and_tolerance_are_part_of_the_state(wheel):
 
 @pytest.mark.parametrize(("s_before", "s_after"), [(0.0, 0.03), (0.03, 0.0)])
 def test_a_state_keeps_the_method_that_the_change_of_friction_chose(wheel, s_before, s_after):
-    law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: DOP853 without friction, BDF where the law is stiff
+    law = {"friction_law": 2, "omega_s": 1e-4}  # automatic: DOP853 without friction, collocation where the law is stiff
     w, other, partner = wheel().start(s=s_before, **law), wheel(), wheel().start(s=s_after, **law)
     w.to(0.25).put(s=s_after).to(0.5)
     blob = w.serialized()

@@ -1,6 +1,6 @@
 """Lives of one instance in which memory runs short, at each allocation in turn, once or from there on.
 
-    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD OMEGA_S
+    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD
 
 FOLDER holds the unpacked FMU. It fails where a promise is broken: an error has its message; once there is memory again,
 the same instance goes on with the bits of an undisturbed life.
@@ -15,8 +15,7 @@ from support.driver import ERROR, FMU2Wheel, Message
 number, first, last = (c_long.in_dll(CDLL(None), name) for name in ("number", "first_failing", "last_failing"))
 NEVER = 2**62
 loaded = FMU2Wheel(sys.argv[1], read_model_description(sys.argv[1]))
-values = dict(zip(("formulation", "friction_law", "method"), map(int, sys.argv[2:5]), strict=True))
-values |= {"s": 0.3, "omega_s": float(sys.argv[5])}
+values = dict(zip(("formulation", "friction_law", "method"), map(int, sys.argv[2:5]), strict=True)) | {"s": 0.3}
 
 
 def run(w: FMU2Wheel) -> list[bytes]:

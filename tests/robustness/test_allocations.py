@@ -9,9 +9,9 @@ import pytest
 from support.driver import ERROR, OK
 from support.paths import ROOT
 
-# Formulation, friction law, method (4: Runge-Kutta), omega_s: here every allocation is our own. SUNDIALS does not
-# survive each failure of one it makes (docs/decisions/package.md), so its methods are not played with.
-SCENES = {"reduced": (2, 1, 4, 1.0), "multibody": (3, 1, 4, 1.0), "regularized, not stiff": (2, 2, 4, 1.0)}
+# formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
+# failure of one it makes (docs/decisions/package.md), so its methods are not played with.
+SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}
 
 
 @pytest.fixture(scope="module")

@@ -120,6 +120,31 @@ def steps_to_and_fro(wheel, **law: str | float) -> int:
     return w.get("n_steps")[0]
 
 
+def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library) -> None:
+    """Braked, often to a locked wheel, at a tight tolerance: the spin and the direction of slip both settle at once."""
+    random, times, errors, others = np.random.default_rng(4), np.linspace(0, 1, 11), [], []
+    for _ in range(40):
+        start = {"mu_max": random.uniform(0.1, 0.6), "s": 0.01, "theta_start": random.uniform(0.9, 1.57)}
+        start |= {"mu_slide": start["mu_max"] * random.uniform(0.7, 1), "phi_dot_start": random.uniform(-15, 15)}
+        start |= {"slip_y_start": random.normal(), "M_brake": random.choice([20.0, 200.0, 1000.0])}
+        start |= {"keep_contact": True}
+        narrow = {"friction_law": "regularized", "omega_s": 1e-9}
+        exact = run(library, start, times, 1e-11)
+        errors.append(error_against(exact, run(library, start | narrow, times, 1e-10)))
+        others.append(error_against(exact, run(library, start | narrow | {"omega_s": 1e-4}, times, 1e-10)))
+    bound = 10 * law_bound(1e-9, 1e-10)
+    within(max(errors), bound, "error of the law / range")
+    beyond(max(others), bound, "error of a wide law / range")
+
+
+def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
+    def evaluations(omega_s: float) -> int:
+        return wheel().start(**FRICTION, friction_law="regularized", omega_s=omega_s).to(10.0).get("n_rhs")[0]
+
+    within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
+    beyond(evaluations(5e-4) / evaluations(1e-2), 1.5, "growth where the law is not yet solved by its layer")
+
+
 @pytest.mark.parametrize("omega_s", [1e-7, 1e-8])
 def test_after_a_brief_passage_the_steps_are_as_long_as_before_it(wheel, omega_s: float) -> None:
     law = {"friction_law": "regularized", "omega_s": omega_s}
@@ -128,7 +153,7 @@ def test_after_a_brief_passage_the_steps_are_as_long_as_before_it(wheel, omega_s
     beyond((steps_to_and_fro(wheel, **law, method="bdf") - exact) / 20, 30, "steps of a passage, BDF")
 
 
-# ---- method = automatic follows what is tuned: a law that becomes stiff is solved by BDF from there on ----
+# ---- what is tuned counts: a law that becomes stiff is solved by its layer from there on ----
 
 
 @pytest.mark.parametrize("before", [(), (0.5,)], ids=["before the first step", "during the run"])

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <span>
 #include <vector>
 
 #include "solver.hpp"
@@ -15,11 +16,12 @@ namespace {
 // harmonic: y = (cos t, -sin t) from (1, 0); clock: y = t; explosive: y' = y^2; ending: y' = 1 up to t = 1, then no
 // number; wave: y = sin(5 t) / 5.
 // settling, falling: the speed u = t or 1 - t; the direction chi settles to sin t, u (chi - sin t)' = -4.5 (chi - sin
-// t): their difference goes as u^-4.5 or u^4.5; two states as the harmonic ones, pushed by the difference.
+// t): their difference goes as u^-4.5 or u^4.5; two states as the harmonic ones, pushed by the difference. steep: chi
+// settles to width sin t at a rate of up to 4.5 / width, and pushes by its difference in widths.
 constexpr int states = 8;
-constexpr double stiffness = 4.5;
+constexpr double stiffness = 4.5, width = 1e-4;
 
-enum Kind : int { harmonic, clock, explosive, ending, wave, settling, falling };
+enum Kind : int { harmonic, clock, explosive, ending, wave, settling, falling, steep };
 using Watch = double (*)(double t, const double* y);
 
 // A problem has one state or two, and others that rest at zero: a solver takes eight.
@@ -48,15 +50,21 @@ void rates(const Setting& s, double t, const double* y, double* d) {
   if (s.kind == ending) d[0] = t > 1 ? NAN : 1;
   if (s.kind == wave) d[0] = std::cos(5 * t);
   if (s.kind < settling) return;
-  const double off = y[1] - std::sin(t);
-  d[0] = s.kind == settling ? 1 : -1;
+  const double off = y[1] - std::sin(t), steep_off = std::tanh(y[1] / width) - std::tanh(std::sin(t));
+  d[0] = s.kind == falling ? -1 : 1;
   d[1] = y[0] == 0 ? 0 : std::cos(t) - stiffness * off / y[0];
-  d[2] = y[3] + off, d[3] = -y[2];
+  if (s.kind == steep) d[1] = width * std::cos(t) - stiffness * steep_off;
+  d[2] = y[3] + (s.kind == steep ? steep_off : off), d[3] = -y[2];
 }
 
 int states_of(const Setting& s) { return s.kind >= settling ? 4 : s.kind == harmonic ? 2 : 1; }
 
-double slope_of_turning(void*, double, const double*) { return -stiffness; }
+void slopes_of_turning(void* owner, double, const double*, std::span<const double> values, double* slopes) {
+  for (const double chi : values) {
+    const double part = 1 / std::cosh(chi / width);
+    *slopes++ = -stiffness * (of(owner).kind == steep ? part * part / width : 1);
+  }
+}
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
@@ -66,6 +74,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 void weights(void* owner, double share, const double* y, double* w) {
   const double per_state = std::sqrt(static_cast<double>(states) / states_of(of(owner)));
   for (int i = 0; i < states; ++i) w[i] = per_state / (share * of(owner).tolerance * (1 + std::fabs(y[i])));
+  if (of(owner).kind == steep) w[1] /= width;
 }
 
 double watched(void* owner, int, double t, const double* y) { return of(owner).watched(t, y); }
@@ -81,9 +90,10 @@ solver::Problem problem_of(Probe* probe) {
   solver::Problem p = {};
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.watched) p.watch({1, watched, false});
-  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
+  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = p.first_step = s.longest_step;
   // Of the other problems the last state, which rests, at a speed of one.
-  p.settling = s.kind >= settling ? solver::Settling{1, 0, slope_of_turning} : solver::Settling{7, 6, slope_of_turning};
+  const bool settles = s.kind >= settling;
+  p.settle({settles ? 1 : 7, s.kind == steep ? -1 : settles ? 0 : 6, slopes_of_turning});
   return p;
 }
 

@@ -10,7 +10,7 @@ import numpy as np
 METHODS = {"adams": 0, "bdf": 1, "runge_kutta": 2, "collocation": 3}
 # The state at t = 0.
 PROBLEMS = {"harmonic": (1.0, 0.0), "clock": (0.0,), "explosive": (1.0,), "ending": (1.0,), "wave": (0.0,)}
-PROBLEMS |= {"settling": (0.0, 0.0, 1.0, 0.0), "falling": (1.0, 0.0, 1.0, 0.0)}
+PROBLEMS |= {"settling": (0.0, 0.0, 1.0, 0.0), "falling": (1.0, 0.0, 1.0, 0.0), "steep": (0.0, 0.0, 1.0, 0.0)}
 STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))

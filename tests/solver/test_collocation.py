@@ -1,7 +1,8 @@
 """Collocation at the points of Radau IIA: order, error estimate, the state that settles, restart, dense output.
 
-The problems of probe.cpp: |u| = t or 1 - t, a direction that settles to sin t at the rate 4.5 / |u|, two states that it
-pushes. test_steps.py and test_search.py run for collocation too.
+The problems of probe.cpp: |u| = t or 1 - t, a direction that settles to sin t at the rate 4.5 / |u|, or a state that
+settles to 1e-4 sin t under a law as wide as that; two states that it pushes. test_steps.py and test_search.py run for
+collocation too.
 """
 
 from functools import partial
@@ -14,7 +15,7 @@ from support.bounds import EPSILON, absolute_error, beyond, within
 
 from .solving import STEPPED
 
-STIFFNESS = 4.5
+STIFFNESS, WIDTH = 4.5, 1e-4
 TOLERANCES = (1e-5, 1e-8, 1e-11)
 
 
@@ -25,6 +26,8 @@ def collocation(solver):
 
 def settled(problem, t, off=0.0, since=0.0, speed=None):
     """u and chi at t; the direction was `off` its limit at `since`, where the speed was that."""
+    if problem == "steep":
+        return np.array([t, WIDTH * np.sin(t)])
     u = t if problem == "settling" else 1 - t
     left = off * (u / speed) ** (-STIFFNESS if problem == "settling" else STIFFNESS) if off else 0.0
     return np.array([u, np.sin(t) + left])
@@ -68,10 +71,10 @@ def run(collocation, problem, tolerance, until):
     return max(ends) / tolerance, max(inside) / tolerance, one
 
 
-@pytest.mark.parametrize("problem", ["settling", "falling"])
+@pytest.mark.parametrize("problem", ["settling", "falling", "steep"])
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_the_error_is_that_of_the_tolerance_at_the_ends_and_inside(collocation, problem, tolerance):
-    until = 5.0 if problem == "settling" else 0.999
+    until = 0.999 if problem == "falling" else 5.0
     ends, inside, one = run(collocation, problem, tolerance, until)
     within(ends, 0.3, "error at the ends of the steps, in tolerances")
     within(inside, 0.3, "error inside the steps, in tolerances")
@@ -94,6 +97,16 @@ def test_a_direction_off_its_limit_settles_by_the_closed_form(collocation, off, 
                 worst = max(worst, error_of(one, t, problem, off=off, since=since, speed=speed))
         within(worst / tolerance, 10, "error in tolerances")
         within(one.now.steps, 400, "number of steps")
+
+
+@pytest.mark.parametrize("off", [20.0, -3.0])
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_a_state_outside_its_steep_law_comes_to_its_limit_in_few_steps(collocation, off, tolerance):
+    one = collocation("steep", tolerance=tolerance, longest_step=0.5)
+    one.restart(0.0, [0.0, off * WIDTH, 1.0, 0.0])
+    assert one.run(0.5, 1000) == STEPPED, one.failure
+    within(abs(one.read(0.5)[1] / WIDTH - np.sin(0.5)), 10 * tolerance, "off the limit, in widths")
+    within(one.now.steps, 150, "number of steps")
 
 
 def test_however_close_to_nothing_the_speed_falls_steps_go_on(collocation):
@@ -143,7 +156,7 @@ def test_the_polynomial_begins_and_ends_with_the_step_and_has_the_rates_at_its_e
         within(absolute_error(back, rates), 1e-5, "rates at the end of the step")
 
 
-@pytest.mark.parametrize("problem", ["harmonic", "settling", "falling"])
+@pytest.mark.parametrize("problem", ["harmonic", "settling", "falling", "steep"])
 def test_a_history_restored_from_bytes_goes_on_with_the_same_bits(solver, method, problem):
     """After each of some steps, and inside one; by every method, of problems that all can solve."""
     if problem != "harmonic" and method != "collocation":
