@@ -111,7 +111,7 @@ def sines(t: float, order: int = 0) -> tuple[float, ...]:
 # Start values of one scene of every kind: every formulation, every method, every law of friction, and a slide.
 KINDS: dict[str, Values] = {
     name: SCENES[name].start
-    for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized")
+    for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized", "stiff law")
 } | {
     "multibody": {**GENERAL, "formulation": "multibody", "s": 0.03},
     "multibody, adams": {**GENERAL, "formulation": "multibody", "method": "adams"},
@@ -120,6 +120,7 @@ KINDS: dict[str, Values] = {
     "runge_kutta": {"method": "runge_kutta"},
     "guided": {"guided": True, **GENERAL, "s": 0.03},  # stops after 1.4 s
     "sliding": {"mu_max": 0.45, "mu_slide": 0.4},  # from 0.57 to 0.96 s and from 1.87 to 2.19 s
+    "sliding, stiff law": {**SCENES["stiff law"].start, "mu_max": 0.45, "mu_slide": 0.4},
 }
 
 # Every formulation by every method, forced.

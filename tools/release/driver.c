@@ -44,6 +44,7 @@ static const struct scene {
     {"driven on a slope in time", {1, 1, 1}, {0.01, 0.9, 0.05, 0, 0.2}, 0.1, 1e-6},
     {"tight tolerance", {1, 1, 1}, {0, 0.9, 0.05, 0.5, 0}, 0, 1e-12},
     {"sliding", {1, 1, 1}, {0, 0.9, 0.05, 0, 0, 0.45, 0.4}, 0, 1e-8},
+    {"sliding, stiff law", {1, 2, 1}, {0.3, 0.9, 0.05, 0, 0, 0.45, 0.4}, 0, 1e-8},
 };
 
 /* Steps of one instance; `table` has for each step the values of the inputs, then their derivatives of order 1 to
