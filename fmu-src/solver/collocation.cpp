@@ -62,7 +62,7 @@ constexpr double part_of_tolerance = 0.2;
 constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.05;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
-// The shortest step, in roundings of time: the settling state may do in it what it will, the others hardly move.
+// The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.
 constexpr double roundings = 2;
 
 // At the point j of a step of this size.
@@ -73,9 +73,10 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// Newton's matrix for the rates of the settling state at the points.
+// Newton's matrices for the rates of the settling states at the points, and what follows a steep turning.
 struct Collocation::Newton {
   Eigen::PartialPivLU<Square> matrix[2];
+  Row others = Row::Zero();
 };
 
 Collocation::Newton Collocation::prepare(const Problem& problem, const Step& step) const {
@@ -88,7 +89,8 @@ Collocation::Newton Collocation::prepare(const Problem& problem, const Step& ste
     const auto& [state, speed, slopes_of] = problem.settling[i];
     const Column values = along(state);
     Column slopes;
-    slopes_of(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data());
+    slopes_of(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
+              newton.others.data());
     Square matrix = size_ * slopes.asDiagonal() * integral;
     if (speed < 0)
       matrix.diagonal().array() -= 1;
@@ -104,7 +106,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
                           Step* step) {
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
-  Column turning[2];
+  Column speeds[2];
   for (int j = 0; j < radau_points; ++j) {
     const Row y = state_at(j, *step, size_, f_);
     const double t = step->start + (1 + places[j]) * size_;
@@ -113,17 +115,22 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     if (std::isnan(margin)) return INFINITY;
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
     for (int i = 0; i < problem.settling_count; ++i) {
-      const auto& [state, speed, slopes_of] = problem.settling[i];
-      turning[i][j] = (speed < 0 ? 1 : y[speed]) * (f(j, state) - f_[j][state]);
+      const int speed = problem.settling[i].speed;
+      speeds[i][j] = speed < 0 ? 1 : y[speed];
     }
   }
   for (int i = 0; i < problem.settling_count; ++i) {
     const int state = problem.settling[i].state;
-    f.col(state) = before.col(state) - newton.matrix[i].solve(turning[i]);
+    const Column turning = speeds[i].cwiseProduct(f.col(state) - before.col(state));
+    const Column settled = before.col(state) - newton.matrix[i].solve(turning);
+    // Newton's method has moved the state, and with a steep turning all that follows it.
+    if (problem.settling[i].speed < 0) f += (settled - f.col(state)) * newton.others;
+    f.col(state) = settled;
   }
   const Rates change = size_ * (f - before);
   double largest = 0;
-  for (int j = 0; j < radau_points; ++j) largest = std::max(largest, weighted_norm<max_states>(&change(j, 0), weights));
+  for (int j = 0; j < radau_points; ++j)
+    if (const double norm = weighted_norm<max_states>(&change(j, 0), weights); !(norm <= largest)) largest = norm;
   before = f;
   return std::isfinite(largest) ? largest : INFINITY;
 }
@@ -187,7 +194,8 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
       break;
     }
     const bool is_shortest = size_ <= shortest;
-    if (is_shortest) weights[problem.settling[0].state] = 0;
+    if (is_shortest)
+      for (int i = 0; i < problem.settling_count; ++i) weights[problem.settling[i].state] = 0;
     const double error = try_size(problem, weights, counters, step);
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
@@ -198,9 +206,10 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     if (!known_) continue;
     const Row y_end = state_at(radau_points - 1, *step, size_, f_);
     std::copy_n(y_end.data(), max_states, step->y_end);
-    // The settling state changes as 1 / speed.
-    const int speed = problem.settling[0].speed;
-    if (speed >= 0) liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
+    // A state that settles at a speed changes as 1 / speed.
+    for (int i = 0; i < problem.settling_count; ++i)
+      if (const int speed = problem.settling[i].speed; speed >= 0)
+        liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
     failure_ = nullptr;
     return true;
   }

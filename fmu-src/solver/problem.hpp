@@ -28,8 +28,10 @@ struct Watched {
 // small, or the turning steep, it settles at once where the turning vanishes.
 struct Settling {
   int state, speed;
-  // Slopes of the turning by the state, where y has these values of it.
-  void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes);
+  // Slopes of the turning by the state, where y has these values of it. Of a steep turning also `others`: by how much
+  // the rate of each state changes with the turning.
+  void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes,
+                 double* others);
 };
 
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
@@ -58,11 +60,10 @@ struct Problem {
   double share = 1;   // of the error that a step may otherwise make
 
   // At most max_watched of them.
-  // At most two.
-  void settle(const Settling& state) { settling[settling_count++] = state; }
-  // Whether the last of them turns steeply.
-  bool is_steep() const { return settling_count > 0 && settling[settling_count - 1].speed < 0; }
   void watch(const Watched& function) { watched[watched_count++] = function; }
+  // At most two, one of them steep and the first.
+  void settle(const Settling& state) { settling[settling_count++] = state; }
+  bool is_steep() const { return settling_count > 0 && settling[0].speed < 0; }
 };
 
 // Of all steps since the first start. `rhs` counts the evaluations of f, those for difference quotients included but

@@ -67,6 +67,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
   if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
   now.scene.contact = WHEEL_GRIPS;
+  now.layered = false;
   decide_law(setup, t, y, now);
   if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
 }
@@ -75,7 +76,7 @@ void decide_law(const Setup& setup, double t, const double* y, InForce& now, boo
   WheelScene scene = now.scene_at(t);
   scene.friction = released ? released_from(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
-  const bool stiff = can_stiffen(setup, now) && softness_of(setup, scene, y) < 0;
+  const bool stiff = can_stiffen(setup, now) && (now.slides() || softness_of(setup, scene, y) < 0);
   if (stiff || now.layered) decide_layer(setup, y, now);
 }
 

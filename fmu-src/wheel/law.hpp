@@ -53,8 +53,8 @@ Held held_at(const Setup& setup, const WheelScene& scene, const double* y);
 // digit.
 inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 
-// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law. Once
-// solved so, it stays so until an input changes.
+// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law, as it
+// is wherever the wheel slides. Once solved so, it stays so until an input or the contact changes.
 bool can_stiffen(const Setup& setup, const InForce& in_force);
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 

@@ -64,7 +64,7 @@ double margin(void* owner, int event, double t, const double* y) {
 }
 
 // Of |u| chi_dot by the direction chi of the slip.
-void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
+void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
@@ -73,17 +73,21 @@ void slopes_of_turning(void* owner, double t, const double* y, std::span<const d
 }
 
 // Of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment forward and backward.
-void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes) {
+void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes,
+                    double* others) {
   const Setup& setup = wheel_of(owner).setup;
   WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
-  double rates[2] = {};
-  for (const int forward : {0, 1}) {
-    scene.friction = {WHEEL_ROLLING, forward ? 1.0 : -1.0, 0};
-    rates[forward] = rates_of(setup, scene, y).y_dot[formulation_of(setup, scene).spin_index];
-  }
+  scene.friction = {WHEEL_ROLLING, 1, 0};
+  const Rates forward = rates_of(setup, scene, y);
+  scene.friction = {WHEEL_ROLLING, -1, 0};
+  const Rates backward = rates_of(setup, scene, y);
+  const WheelFormulation& formulation = formulation_of(setup, scene);
+  const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
+  const double own = change(formulation.spin_index);
+  for (int i = 0; i < formulation.states; ++i) others[i] = change(i) / own;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
-    *slopes++ = (rates[1] - rates[0]) / 2 * (1 - part * part) / setup.omega_s;
+    *slopes++ = own * (1 - part * part) / setup.omega_s;
   }
 }
 
@@ -106,14 +110,15 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  if (now.slides()) problem.settle({setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning});
   problem.first_step = problem.longest_step;
   if (now.scene.friction.kind == WHEEL_REGULARIZED) {
     const int spin = formulation_of(setup, now.scene).spin_index;
     problem.settle({spin, -1, slopes_of_spin});
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
+    // An eighth of the layer.
     if (now.layered) problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
+  if (now.slides()) problem.settle({setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning});
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;

@@ -137,12 +137,32 @@ def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library
     beyond(max(others), bound, "error of a wide law / range")
 
 
+def test_a_slide_does_not_step_over_the_layer_of_a_law_that_is_hardly_stiff(library: Library) -> None:
+    start = {"friction_law": "regularized", "omega_s": 3.4437e-4, "s": 0.01, "keep_contact": True}
+    start |= {"mu_max": 0.32670876, "mu_slide": 0.32108712, "theta_start": 1.42636813, "psi_dot_start": 0.11561844}
+    start |= {"phi_dot_start": -0.01491872, "slip_x_start": 2.31003507, "slip_y_start": 0.86868436}
+    headings = [run(library, start, [0.0, 1.0], tolerance)["psi"][-1] for tolerance in (1e-6, 1e-8, 1e-10, 1e-12)]
+    within(absolute_error(headings[:3], headings[3]), 1e-5, "heading at other tolerances, rad")
+    wider = run(library, start | {"omega_s": 2 * start["omega_s"]}, [0.0, 1.0], 1e-8)["psi"][-1]
+    beyond(abs(wider - headings[3]), 1e-5, "heading under a law twice as wide, rad")
+
+
+def test_a_spin_that_settles_takes_the_multibody_form_and_the_slip_with_it(wheel) -> None:
+    """The rates of all other states depend on the moment that the spin finds: else the sweeps hardly converge."""
+    law = {"friction_law": "regularized", "omega_s": 1e-7, "keep_contact": True, "psi_dot_start": 0.2, "M_brake": 20.0}
+    slide = {"s": 0.03, "mu_max": 0.34, "mu_slide": 0.24, "theta_start": 0.955, "slip_x_start": 0.0575}
+    for formulation in ("reduced", "multibody"):
+        for tolerance, most in ((1e-4, 20000), (1e-6, 20000), (1e-8, 60000)):
+            w = wheel().start(**law, **slide, formulation=formulation, phi_dot_start=0.276, tolerance=tolerance).to(1.0)
+            within(w.get("n_rhs")[0], most, "evaluations in a second")
+
+
 def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
     def evaluations(omega_s: float) -> int:
         return wheel().start(**FRICTION, friction_law="regularized", omega_s=omega_s).to(10.0).get("n_rhs")[0]
 
     within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
-    beyond(evaluations(5e-4) / evaluations(1e-2), 1.5, "growth where the law is not yet solved by its layer")
+    beyond(evaluations(7e-4) / evaluations(1e-2), 1.5, "growth where the law is not yet solved by its layer")
 
 
 @pytest.mark.parametrize("omega_s", [1e-7, 1e-8])

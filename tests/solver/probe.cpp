@@ -59,7 +59,9 @@ void rates(const Setting& s, double t, const double* y, double* d) {
 
 int states_of(const Setting& s) { return s.kind >= settling ? 4 : s.kind == harmonic ? 2 : 1; }
 
-void slopes_of_turning(void* owner, double, const double*, std::span<const double> values, double* slopes) {
+void slopes_of_turning(void* owner, double, const double*, std::span<const double> values, double* slopes,
+                       double* others) {
+  others[1] = 1;
   for (const double chi : values) {
     const double part = 1 / std::cosh(chi / width);
     *slopes++ = -stiffness * (of(owner).kind == steep ? part * part / width : 1);
