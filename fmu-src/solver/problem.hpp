@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 
 namespace solver {
@@ -56,8 +57,8 @@ struct Problem {
   double longest_step;   // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   Settling settling[2];  // for collocation alone
   int settling_count;
-  double first_step;  // s, > 0: longest of collocation, whose points leave out the start
-  double share = 1;   // of the error that a step may otherwise make
+  double first_step = INFINITY;  // s, > 0: limit of collocation's, whose points leave out the start
+  double share = 1;              // of the error that a step may otherwise make
 
   // At most max_watched of them.
   void watch(const Watched& function) { watched[watched_count++] = function; }

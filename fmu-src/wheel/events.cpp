@@ -83,7 +83,6 @@ double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
 }
 
-// Model exchange leaves a stiff law to the caller's solver.
 void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
 
 }  // namespace
@@ -92,7 +91,7 @@ constexpr EventRow event_rows[] = {
     {.event = Event::changes_layer,
      .can_occur = has_layer_ahead,
      .value = way_to_layer,
-     .exchanged = false,
+     .exchanged = false,  // it leaves a stiff law to the caller's solver
      .follow = change_layer},
     {.event = Event::spin_changes,
      .can_occur = can_change_spin,

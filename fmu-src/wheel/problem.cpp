@@ -83,7 +83,7 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const Rates backward = rates_of(setup, scene, y);
   const WheelFormulation& formulation = formulation_of(setup, scene);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
-  const double own = change(formulation.spin_index);
+  const double own = change(setup.formulation->spin_index);
   for (int i = 0; i < formulation.states; ++i) others[i] = change(i) / own;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
@@ -110,13 +110,11 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  problem.first_step = problem.longest_step;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) {
-    const int spin = formulation_of(setup, now.scene).spin_index;
-    problem.settle({spin, -1, slopes_of_spin});
+  const int spin = setup.formulation->spin_index;
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.settle({spin, -1, slopes_of_spin});
+  if (now.in_layer()) {  // an eighth of it
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
-    // An eighth of the layer.
-    if (now.layered) problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
+    problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
   if (now.slides()) problem.settle({setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning});
   for (const EventRow& row : event_rows)

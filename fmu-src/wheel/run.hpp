@@ -34,7 +34,7 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 // at the same instant the later one counts.
 enum class Event : int {
   none,
-  changes_layer,  // omega_z enters or leaves the layer of a stiff regularized law, or the law becomes so steep
+  changes_layer,  // omega_z enters or leaves the layer of a stiff regularized law, or the law becomes stiff
   spin_changes,   // omega_z reaches zero, or friction and brake can no longer hold it there
   lost_grip,      // the wheel needs a friction coefficient above mu_max
   slip_ends,      // the slip falls to zero

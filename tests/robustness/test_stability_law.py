@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from reference import Start, Wheel
 from reference.modes import rolling
 from reference.motion import initial_state
 from robustness.judges import FRICTION, TIMES, error_against, law_bound
@@ -10,6 +9,7 @@ from scipy.integrate import solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.driver import OK, Values
 from support.motion import Library, Run, run
+from support.scenes import Scene
 
 PLACE = [7, 8]  # X_O and Y_O in the state of the reference
 
@@ -84,9 +84,8 @@ def test_a_stiff_law_is_solved_within_its_tolerance(library: Library, method: st
     for seed in range(40):
         start, omega_s = random_law(seed)
         law = {**start, "keep_contact": True, "friction_law": "regularized", "method": method}
-        wheel = Wheel(s=start.pop("s"))
-        state = initial_state(wheel, Start(**{name.removesuffix("_start"): value for name, value in start.items()}))
-        rate = rolling(wheel, omega_s)
+        scene = Scene(start)
+        rate, state = rolling(scene.wheel, omega_s), initial_state(scene.wheel, scene.motion)
         exact = solve_ivp(rate, (0, 3), state, "LSODA", times, rtol=1e-11, atol=1e-13).y[PLACE].T
         for found, width in ((errors, omega_s), (others, 2 * omega_s)):
             done = run(library, law | {"omega_s": width}, times, tolerance)
@@ -109,15 +108,6 @@ def test_ten_minutes_of_weak_releases_keep_energy_spin_and_cost(library: Library
     assert looser.counters["n_events"] == done.counters["n_events"] == len(done.events) > 3000
     rhs = [run(library, FRICTION, [0.0, stop], 1e-8).counters["n_rhs"] for stop in (50.0, 150.0, 500.0, 600.0)]
     within((rhs[3] - rhs[2]) / (rhs[1] - rhs[0]), 1.1, "evaluations, late over early")
-
-
-def steps_to_and_fro(wheel, **law: str | float) -> int:
-    """Of an upright wheel that a moment turns back twenty times."""
-    w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
-    for k in range(20):
-        w.set(M_3=20.0 * (-1) ** k)
-        assert w.step(0.8 if k else 0.4) == OK
-    return w.get("n_steps")[0]
 
 
 def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library) -> None:
@@ -163,6 +153,15 @@ def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
 
     within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
     beyond(evaluations(7e-4) / evaluations(1e-2), 1.5, "growth where the law is not yet solved by its layer")
+
+
+def steps_to_and_fro(wheel, **law: str | float) -> int:
+    """Of an upright wheel that a moment turns back twenty times."""
+    w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
+    for k in range(20):
+        w.set(M_3=20.0 * (-1) ** k)
+        assert w.step(0.8 if k else 0.4) == OK
+    return w.get("n_steps")[0]
 
 
 @pytest.mark.parametrize("omega_s", [1e-7, 1e-8])

@@ -92,7 +92,7 @@ solver::Problem problem_of(Probe* probe) {
   solver::Problem p = {};
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.watched) p.watch({1, watched, false});
-  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = p.first_step = s.longest_step;
+  p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   // Of the other problems the last state, which rests, at a speed of one.
   const bool settles = s.kind >= settling;
   p.settle({settles ? 1 : 7, s.kind == steep ? -1 : settles ? 0 : 6, slopes_of_turning});
