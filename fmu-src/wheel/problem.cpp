@@ -72,7 +72,8 @@ void slopes_of_turning(void* owner, double t, const double* y, std::span<const d
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, reduced, chi.back()).settling);
 }
 
-// Of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment forward and backward.
+// Of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment forward and backward; zero
+// where the ground pulls and no brake acts.
 void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes,
                     double* others) {
   const Setup& setup = wheel_of(owner).setup;
@@ -84,7 +85,7 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const WheelFormulation& formulation = formulation_of(setup, scene);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
   const double own = change(setup.formulation->spin_index);
-  for (int i = 0; i < formulation.states; ++i) others[i] = change(i) / own;
+  for (int i = 0; i < formulation.states; ++i) others[i] = own == 0 ? 0 : change(i) / own;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
     *slopes++ = own * (1 - part * part) / setup.omega_s;

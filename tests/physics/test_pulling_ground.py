@@ -2,7 +2,7 @@
 
 Violent starts: two to eight times the rates of the paper's wheel, keep_contact, exact law. Judged by the reference,
 which ends each mode at N = 0 too, and by the unit's own tightest run; errors relative to the range of each headline
-output, over the factor by which the motion makes errors grow.
+output, over the factor by which the motion makes errors grow. Regularized law: closed forms of a guided wheel.
 """
 
 from dataclasses import replace
@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 from reference import Start, Wheel, solve
 from support.bounds import beyond, range_error, within
+from support.closed_forms import rolling_inertia
 from support.driver import HEADLINE
 from support.motion import Library, Run, start_values
+from support.schedule import Schedule
 
 TIMES = np.linspace(0, 2, 41)
 WHEEL = Wheel(s=0.03)
@@ -63,3 +65,34 @@ def test_the_reference_goes_the_same_way(library: Library, seed: int) -> None:
     assert pulled(got) == (seed != 3)
     if pulled(got):
         beyond(distance(got, other), 1e-2, "distance with s |N| while the ground pulls / range")
+
+
+# Upright on a hub carrier: s, inputs, the instant from which rolling friction has no moment, and the rate of the spin
+# then. A slide on ground that presses turns the wheel by mu N R.
+MU, R, LIFT, TORQUE = 0.1, WHEEL.r_0 + WHEEL.r, 500.0, 0.01
+SLIDES = {"slip_x_start": 3.0, "mu_max": MU, "mu_slide": MU, "omega_s": 1.0}
+VANISHING = {
+    "slides": (SLIDES, 0.003, Schedule(((0.0, {}), (0.15, {"F_Z": LIFT}))), 0.15, 0.0),
+    "rolls": (
+        {"phi_dot_start": 0.0, "omega_s": 1e-6},
+        *(0.003, Schedule(((0.0, {}), (0.15, {"F_Z": LIFT, "M_3": TORQUE}))), 0.15, TORQUE / rolling_inertia(WHEEL)),
+    ),
+    "brake": (
+        SLIDES,
+        0.0,
+        Schedule(((0.0, {"M_brake": (10.0, -50.0)}), (0.3, {}))),
+        0.2,
+        -MU * WHEEL.m * WHEEL.g * R / WHEEL.J_z,
+    ),
+}
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("scene", VANISHING)
+def test_a_regularized_law_is_solved_where_it_has_no_moment(library: Library, scene: str, formulation: int) -> None:
+    start, s, inputs, since, expected = VANISHING[scene]
+    law = {"friction_law": 2, "s": s, "keep_contact": True, "guided": True, "formulation": formulation}
+    run = library.simulate([0, since, 0.4], 1e-8, inputs, theta_start=np.pi / 2, **start, **law)
+    _, before, after = run["omega_z"]
+    within(abs((after - before) / (0.4 - since) - expected), 1e-6, "rate of the spin, rad/s2")
+    assert scene == "rolls" or run["contact_mode"][-1] == 1
