@@ -73,5 +73,5 @@ def page(template: str, **values: object) -> str:
     """A page out of a template; an unknown name is an error."""
     loader = FileSystemLoader(TEMPLATES)
     pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    pages.filters["table"] = table
+    pages.filters |= {"table": table, "number": number}
     return re.sub(r"\n{3,}", "\n\n", pages.get_template(template).render(**values)).strip() + "\n"
