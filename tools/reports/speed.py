@@ -96,9 +96,14 @@ def time_at(runs: pd.DataFrame, method: str, error: float) -> float:
     return exp(np.interp(log(error), *np.log(points[["error", "best_us"]].to_numpy(float)).T, left=nan))
 
 
+def over(runs: pd.DataFrame, method: str, other: str) -> np.ndarray:
+    """The time of a method over another's at each of the equal errors; nan where one of them was not asked."""
+    return np.array([time_at(runs, method, error) / time_at(runs, other, error) for error in ERRORS])
+
+
 def over_heyoka(runs: pd.DataFrame) -> float:
-    """The FMU's time over heyoka's at equal error, the largest of all errors; nan where heyoka was not asked."""
-    ratios = [time_at(runs, "automatic", error) / time_at(runs, HEYOKA, error) for error in ERRORS]
+    """The FMU's time over heyoka's, the largest of all errors; nan where heyoka was not asked."""
+    ratios = over(runs, "automatic", HEYOKA)
     return nan if np.isnan(ratios).all() else np.nanmax(ratios)
 
 
@@ -116,6 +121,8 @@ def compare(report: Report) -> Row:
     beside = {name: over_heyoka(runs) for name, runs in scenes.items()}
     found["heyoka_unfolded"] = max(beside[name] for name in ("free", "fast rolling", "near flat"))
     found["heyoka_stepped"] = max(beside[name] for name in ("friction", "general inertia"))
+    smooth = [over(runs, "adams", "runge_kutta") for name, runs in scenes.items() if name != "stiff law"]
+    found |= {"adams_least": np.min(smooth), "adams_most": np.max(smooth)}
     return found | {"rule": ratios.max(), "free_rule": ratios["free"]}
 
 
