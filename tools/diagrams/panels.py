@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import textalloc
 from matplotlib.axes import Axes
-from matplotlib.patches import StepPatch
 from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
@@ -24,7 +23,6 @@ INSET = (0.39, 0.40)  # width and height in the axes
 SUBDIVISION = 4  # drawn points per row among the rates
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
-BAR = 0.025  # of the axes: the height of the bar of a slide
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
 
@@ -55,7 +53,7 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
 def draw_path(ax: Axes, scene: Scene) -> list[str]:
     """The path of the contact point from above, in one scale."""
     time, x, y = scene.smooth(SUBDIVISION, "time", "X_C", "Y_C")
-    _track(ax, x, y, scene.slides[scene.rows_at(time)], style.PURPLE)
+    _track(ax, x, y, scene.slides[scene.rows_at(time)], style.colour("slide"))
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
     least, middle = 0.1 * scene.value("r_0"), [(scene[n].min() + scene[n].max()) / 2 for n in ("X_C", "Y_C")]
     ax.update_datalim(np.add.outer([-least, least], middle))  # set limits could not follow the aspect
@@ -193,7 +191,7 @@ def draw_rates(ax: Axes, scene: Scene) -> list[str]:
         return [r"both rates depend on $\theta$ alone, so the curve is a single arc, traced back and forth"]
     # omega_z = phi_dot + psi_dot cos(theta) is small, and so is the angle at which a narrow bundle lies.
     shear = float(-np.sign(np.cos(scene["theta"].mean())) or -1.0)
-    marks = [r"thick: stick ($\omega_z$ held at zero)"] * bool(stick.any())
+    marks = [r"thick: held at $\omega_z = 0$"] * bool(stick.any())
     if scene.still or np.ptp(y - shear * x) >= NARROW * np.ptp(y):
         return marks
     _draw_inset(ax, x, y, stick, shear)
@@ -274,7 +272,7 @@ def _draw_inset(ax: Axes, x: Array, y: Array, stick: Array, shear: float) -> Non
     inset.tick_params(labelsize=7)
 
 
-def _track(ax: Axes, x: Array, y: Array, thick: Array | bool = False, color: str = style.VERMILLION) -> None:
+def _track(ax: Axes, x: Array, y: Array, thick: Array | bool = False, color: str = style.colour("held")) -> None:
     """A curve that may cross itself: a part of it thick, its start a dot, its end a square."""
     ax.plot(x, y, color=style.BLUE, linewidth=min(0.7, 80 / max(_turns(x), _turns(y), 1)))
     ax.plot(x, np.where(thick, y, np.nan), color=color, linewidth=1.8, solid_capstyle="butt")
@@ -286,16 +284,15 @@ def _time_axis(ax: Axes, scene: Scene) -> list[str]:
     """Time in s over the whole scene, and behind the curve the marks of friction and of slides, which it explains."""
     ax.set(xlim=scene["time"][[0, -1]], xlabel="time $t$ [s]")
     _scale(ax.xaxis, 6)
-    place = {"transform": ax.get_xaxis_transform()}
-    ax.add_artist(StepPatch(scene.mode == 0, scene.edges, fill=True, color=style.BAND, linewidth=0, zorder=0, **place))
-    ax.vlines(scene.reversals, 0.955, 1.0, color=style.VERMILLION, linewidth=0.8, zorder=1, **place)
-    marks = [r"bands: stick ($\omega_z$ held at zero)"] * bool((scene.mode == 0).any())
+    place, slide = {"transform": ax.get_xaxis_transform()}, style.colour("slide")
+    style.strip(ax, scene.edges, scene.mode == 0, style.colour("held"), top=True)
+    ax.vlines(scene.reversals, 0.955, 1.0, color=style.INK, linewidth=0.8, zorder=2, **place)
+    marks = [r"orange at the top: held at $\omega_z = 0$"] * bool((scene.mode == 0).any())
     marks += [r"ticks at the top: $\omega_z$ changes sign"] * bool(scene.reversals.size)
     if scene.slides.any():
-        bars = np.where(scene.slides, BAR, 0.0)
-        ax.add_artist(StepPatch(bars, scene.edges, fill=True, color=style.PURPLE, linewidth=0, zorder=1, **place))
-        ax.vlines(scene.turns, 0.0, 1.0, color=style.PURPLE, linewidth=0.5, alpha=0.6, zorder=0, **place)
-        marks.append("purple bars: it slides; thin lines: it starts and stops sliding")
+        style.strip(ax, scene.edges, scene.slides, slide)
+        ax.vlines(scene.turns, 0.0, 1.0, color=slide, linewidth=0.5, alpha=0.6, zorder=0, **place)
+        marks.append("purple at the bottom: it slides; thin lines: it starts and stops sliding")
     return marks
 
 

@@ -1,33 +1,39 @@
 """One look for every figure: type, colours, sizes in millimetres, and files equal byte for byte.
 
 The type is STIX, which comes with matplotlib, so a figure looks the same on every machine.
-The colours are those of Okabe and Ito, distinct for colour-blind readers and in grey print.
+The colours are those of Okabe and Ito, distinct for colour-blind readers and in grey print, with a purple of more
+contrast. `colours.json` has them, and that of each quantity, also for the browser page.
 """
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.style
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
+from numpy.typing import ArrayLike
 
 mpl.use("Agg")
 
-BLUE = "#0072B2"
-SKY = "#56B4E9"
-VERMILLION = "#D55E00"
-ORANGE = "#E69F00"
-GREEN = "#009E73"
-PURPLE = "#CC79A7"
-INK = "#1A1A1A"
-GREY = "#767676"
-BAND = "#F6D9BF"  # VERMILLION at about a quarter, opaque: SVG and PNG then show one tone
+COLOURS = json.loads(Path(__file__).with_name("colours.json").read_text(encoding="utf-8"))
+PALETTE = {name: tone["light"] for name, tone in COLOURS["palette"].items()}
+BLUE, SKY, VERMILLION, ORANGE = (PALETTE[name] for name in ("blue", "sky", "vermillion", "orange"))
+GREEN, PURPLE, INK, GREY = (PALETTE[name] for name in ("green", "purple", "ink", "grey"))
 
 MM = 1.0 / 25.4  # inch per millimetre
+STRIP = 0.025  # of the axes: the height of a mark at the margin
 NOTE = 7.5  # points, the size of a note
 COLUMN = 89.0  # mm, one journal column
 PAGE = 183.0  # mm, two journal columns
+
+
+def colour(quantity: str) -> str:
+    """Of a quantity or state, such as `v`, `held`, `slide`: one in all pictures."""
+    return PALETTE[COLOURS["quantities"][quantity]]
 
 
 def use_style() -> None:
@@ -45,6 +51,13 @@ def axes_mm(fig: Figure, left: float, bottom: float, width: float, height: float
     """Axes whose frame has this place and size in mm from the figure's lower left corner."""
     w, h = (size / MM for size in fig.get_size_inches())
     return fig.add_axes((left / w, bottom / h, width / w, height / h))
+
+
+def strip(ax: Axes, edges: ArrayLike, shown: ArrayLike, color: str, top: bool = False) -> None:
+    """A mark at the lower or upper margin of a time axis where `shown`, between each two edges."""
+    low, high = (1.0 - STRIP, 1.0) if top else (0.0, STRIP)
+    heights, place = np.where(shown, high, low), {"transform": ax.get_xaxis_transform()}
+    ax.add_artist(StepPatch(heights, edges, baseline=low, fill=True, color=color, linewidth=0, zorder=1, **place))
 
 
 def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:

@@ -105,10 +105,11 @@ def energy(report: Report) -> Row:
     rough, free, long = run(report, **FRICTION), run(report), run(report, 150, 0.05, **FRICTION)
     sticks = rough["friction_mode"] == 0
     with picture(report, "physics_energy") as (left, right):
-        left.fill_between(rough.t, 50, 80, where=sticks, color=style.BAND, lw=0, zorder=0)
+        edges = np.concatenate([rough.t[:1], (rough.t[:-1] + rough.t[1:]) / 2, rough.t[-1:]])
+        style.strip(left, edges, sticks, style.colour("held"), top=True)
         left.plot(free.t, free["E"], color=style.GREY, label="without friction")
         left.plot(rough.t, rough["E"], color=style.BLUE, label="$s = 0.03$ m")
-        title = "The paper's two scenes; bands: held at $\\omega_z = 0$"
+        title = "The paper's two scenes; at the top: held at $\\omega_z = 0$"
         label(left, TIME, ENERGY, title, legend=(0.3, 0.56), xlim=(0, 10), ylim=(50, 80))
         right.plot(long.t[long.t >= 10], long["E"][long.t >= 10], color=style.BLUE)
         label(right, TIME, ENERGY, "The releases go on, ever weaker", xlim=(0, 150))
@@ -128,7 +129,7 @@ def path(report: Report) -> Row:
         left.plot(free["X_C"], free["Y_C"], color=style.SKY, lw=0.5, label="60 s")
         left.plot(free["X_C"][first], free["Y_C"][first], color=style.BLUE, label="first 10 s")
         right.plot(rough["X_C"], rough["Y_C"], color=style.BLUE, lw=0.8, label="rolling")
-        right.plot(rough["X_C"], stuck, color=style.VERMILLION, lw=1.8, label="held at $\\omega_z = 0$")
+        right.plot(rough["X_C"], stuck, color=style.colour("held"), lw=1.8, label="held at $\\omega_z = 0$")
         for ax, scene in ((left, free), (right, rough)):
             ax.plot(scene["X_C"][0], scene["Y_C"][0], "o", color=style.INK, ms=3, label="start")
         from_above(left, "Without friction: equal arcs, turned and mirrored", "upper right")
@@ -172,7 +173,7 @@ def slides(report: Report) -> Row:
     with picture(report, "physics_slides") as (left, right):
         left.plot(wet["X_C"], wet["Y_C"], color=style.BLUE, lw=0.7)
         slides = np.where(wet["contact_mode"] == 1, wet["Y_C"], np.nan)
-        left.plot(wet["X_C"], slides, color=style.PURPLE, lw=1.8, label="it slides")
+        left.plot(wet["X_C"], slides, color=style.colour("slide"), lw=1.8, label="it slides")
         from_above(left, "0.45 and 0.4: it slides twice", "upper left")
         for found, colour, text in ((slippery, style.VERMILLION, "0.3 and 0.25"), (wet, style.BLUE, "0.45 and 0.4")):
             right.plot(found.t, np.hypot(found["slip_x"], found["slip_y"]), color=colour, label=text)

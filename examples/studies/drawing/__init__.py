@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from study import Status
-from values import scale
+from values import moments, scale
 
 from diagrams import style
 
@@ -28,8 +28,10 @@ def studied(table: xr.Dataset) -> dict[str, object]:
 
 
 def wheel_of(table: xr.Dataset) -> dict[str, float]:
-    """The study's wheel."""
-    return WHEEL | studied(table)["values"]
+    """The study's wheel; of a body with the moments that follow from its mass and size."""
+    study = studied(table)
+    wheel = WHEEL | study["values"]
+    return wheel | (moments(study["body"], *(wheel[name] for name in ("m", "r_0", "r"))) if study["body"] else {})
 
 
 def upright_limit(w: Mapping[str, float]) -> float:

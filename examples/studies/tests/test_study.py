@@ -1,5 +1,6 @@
 """Studies with many workers: bit-identical to one, with a scheduler elsewhere, and in an object store."""
 
+import importlib
 import json
 import re
 import shlex
@@ -274,3 +275,19 @@ def test_an_example_draws_a_ready_wheel_beside_its_own(name: str, conduct, tmp_p
     results = conduct(replace(study, grid=few))
     assert content["draw"](content["table"](results), tmp_path / "few").is_file()
     assert (results["status"] != Status.refused).all()
+
+
+@pytest.mark.parametrize("name", ["fates", "uptime"])
+def test_the_critical_spin_that_is_drawn_is_the_bodys(name: str, conduct) -> None:
+    """Closed form of the disc; partner: the paper's wheel has another."""
+    drawing, drawn = importlib.import_module("drawing"), []
+    for body in (None, "disc"):
+        content = study_file(file_of(name), body=body)
+        few = {n: axis[:: max(1, len(axis) // 2)] for n, axis in content["study"].grid.items()}
+        table = content["table"](conduct(replace(content["study"], grid=few)))
+        drawn.append(drawing.upright_limit(drawing.wheel_of(table)))
+    m, r_0, r, g = 20.0, 0.3, 0.05, 9.81
+    J_z, J_x = m * (r_0 + r) ** 2 / 2, m * ((r_0 + r) ** 2 / 4 + r**2 / 3)
+    expected = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * (r_0 + r) ** 2)))
+    within(relative_error(drawn[1], expected), 64 * EPSILON, "critical spin of the disc, relative")
+    beyond(abs(drawn[0] - expected), 0.1, "critical spin of the paper's wheel beside it, rad/s")

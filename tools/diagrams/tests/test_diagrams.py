@@ -76,8 +76,8 @@ def test_a_caption_names_the_marks_of_friction_where_they_are() -> None:
     held = scene(0.03, friction_mode=modes, n_events=3, psi_dot=TIME)
     for panel in paper.PAPERS + paper.OTHERS:
         said, timed = caption(held, panel), panel.name in ("position", "tilt", "ground")
-        assert ("Ticks at the top" in said) is timed and ("Bands: stick" in said) is timed
-        assert ("Thick: stick" in said) is (panel.name == "rates") and "3 transitions" in said
+        assert ("Ticks at the top" in said) is timed and ("Orange at the top: held" in said) is timed
+        assert ("Thick: held" in said) is (panel.name == "rates") and "3 transitions" in said
 
 
 def test_swings_are_drawn_one_by_one_until_they_lie_too_close_and_then_as_two_lines() -> None:
@@ -239,8 +239,8 @@ def test_a_caption_has_the_wheels_own_count_of_transitions() -> None:
 def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_colon() -> None:
     scenes, panel = [slid(), replace(slid(), columns=slid().columns | {"s": np.full(len(TIME), 0.03)})], paper.PAPERS[0]
     remarks = [panel.draw(style.figure_mm(80, 80).subplots(), one) for one in scenes]
-    said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: stick"]], 175.0, 7.5))
-    assert said.count("Purple bars: it slides") == 1 == said.count("Thick: stick")
+    said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: held"]], 175.0, 7.5))
+    assert said.count("Purple at the bottom: it slides") == 1 == said.count("Thick: held")
     assert said.index("Rolling friction: no transitions") < said.index("Thick") < said.index("Purple")
     assert "friction: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling friction")
     assert not re.search(r": [A-Z]", said)
