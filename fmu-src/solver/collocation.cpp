@@ -135,11 +135,16 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
   return std::isfinite(largest) ? largest : INFINITY;
 }
 
-// First rates: those of the last step's polynomial, which goes on, or the rates at the start.
+// First rates: those of the last step's polynomial, which goes on, or the rates at the start. Where a speed changes by
+// its own size within the step, the turning at its start is most often rounding over the speed: zero is nearer.
 bool Collocation::predict(const Problem& problem, const Step& last, Counters* counters, Step* step) {
   if (last.degree != radau_points) {
     ++counters->rhs;
     if (std::isnan(problem.derivative(problem.owner, step->start, step->y_start, f_[0]))) return false;
+    for (int i = 0; i < problem.settling_count; ++i) {
+      const auto& [state, speed, slopes_of] = problem.settling[i];
+      if (speed >= 0 && !(std::fabs(size_ * f_[0][speed]) < step->y_start[speed])) f_[0][state] = 0;
+    }
     for (int j = 1; j < radau_points; ++j) std::copy_n(f_[0], max_states, f_[j]);
     return true;
   }
@@ -153,11 +158,14 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
   return true;
 }
 
-// The error of the step over size_ in units of the weights; infinite where the sweeps do not converge.
-double Collocation::try_size(const Problem& problem, const double* weights, Counters* counters, Step* step) {
+// The error of the step over size_ in units of the weights; infinite where the sweeps do not converge. One that is not
+// predicted may have begun so far off that the first fall of the changes is not that of the next.
+double Collocation::try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters,
+                             Step* step) {
   Newton newton = prepare(problem, *step);
   double change = INFINITY;
   ++counters->jacobians;
+  const double largest_last = predicted ? INFINITY : 1;
   bool converged = false;
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
@@ -167,7 +175,8 @@ double Collocation::try_size(const Problem& problem, const double* weights, Coun
     const bool falls = sweeps < most_sweeps && change < before;
     if (!falls && !(change < 1)) return INFINITY;
     // The changes that would follow sum to change^2 / (before - change). Small ones that do not fall are rounding.
-    converged = !falls || change < distance || (sweeps > 0 && change * change < distance * (before - change));
+    converged = !falls || change < distance ||
+                (sweeps > 0 && change < largest_last && change * change < distance * (before - change));
   }
   const Row last =
       (problem.is_steep() ? error_of_steep : error_of_last) * size_ *
@@ -196,7 +205,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     const bool is_shortest = size_ <= shortest;
     if (is_shortest)
       for (int i = 0; i < problem.settling_count; ++i) weights[problem.settling[i].state] = 0;
-    const double error = try_size(problem, weights, counters, step);
+    const double error = try_size(problem, weights, last.degree == radau_points, counters, step);
     const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
     // Where the direction starts off its limit, errors hardly depend on the size of long steps.

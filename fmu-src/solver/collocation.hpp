@@ -25,7 +25,7 @@ class Collocation final : public Engine {
 
  private:
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
-  double try_size(const Problem& problem, const double* weights, Counters* counters, Step* step);
+  double try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters, Step* step);
   struct Newton;
   Newton prepare(const Problem& problem, const Step& step) const;
   double sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters, Step* step);

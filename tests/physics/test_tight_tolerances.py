@@ -1,14 +1,14 @@
 """Every method reaches the end of every scene at every tolerance, and what is tight is as exact as rounding allows.
 
-Where a slip ends while its direction turns, where omega_z is zero at a start of CVODE, and near flat, where psi_dot =
-omega_2 / sin(theta) magnifies rounding. SI.
+Where a slip begins, or ends while its direction turns, where omega_z is zero at a start of CVODE, and near flat, where
+psi_dot = omega_2 / sin(theta) magnifies rounding. SI.
 """
 
 from math import pi
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, range_errors, within
 from support.driver import OK
 from support.motion import Library, start_values
 from support.motion import run as attempt
@@ -49,6 +49,47 @@ def test_random_wheels_with_friction_run_to_their_end_at_the_tightest_tolerances
         values = {**start_values(wheel, start), "s": 10 ** random.uniform(-4, -1), "keep_contact": True}
         values |= {"formulation": int(random.choice([2, 3])), "method": method}
         assert stopped(library, [0.0, 2.0, 4.0], float(10 ** -random.uniform(11, 13)), **values) == []
+
+
+# ---- the begin of a slip ----
+
+GUIDED = {"guided": True, "theta_start": pi / 2}
+DRIVEN = Schedule(((0.0, {}), (0.1, {"F_X": -26.0}), (0.2, {"F_X": -26.0, "M_3": 40.0})))
+BEGINS = {  # on a hub carrier: the motion amplifies no error
+    "driven": ({"mu_max": 0.17, "mu_slide": 0.17, "s": 0.004, "phi_dot_start": -6.0}, DRIVEN),
+    "thrown": (
+        {"mu_max": 0.458, "mu_slide": 0.458, "s": 0.0081, "phi_dot_start": 1.364}
+        | {"slip_x_start": -0.0318, "slip_y_start": 3.792},
+        Schedule(),
+    ),
+}
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("name", BEGINS)
+def test_the_error_of_a_slide_falls_with_the_tolerance(library: Library, name: str, formulation: int) -> None:
+    start, inputs = BEGINS[name]
+    runs = [
+        library.simulate(np.linspace(0, 1, 21), tolerance, inputs, **GUIDED, **start, formulation=formulation)
+        for tolerance in (*TOLERANCES, 5e-10, 1e-13)
+    ]
+    assert (runs[0]["contact_mode"] == 1).any()
+    for run, tolerance in zip(runs[:-1], (*TOLERANCES, 5e-10), strict=True):
+        errors = range_errors(run.columns, runs[-1].columns, ("X_O", "phi"))
+        within({name: error / tolerance for name, error in errors.items()}, 0.3, "error / range over the tolerance")
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_a_locked_wheel_that_slides_exactly_upright_stays_so(library, tolerance: float, formulation: int) -> None:
+    """Up to the rounding that the upright wheel's instability amplifies."""
+    upright = {"theta_start": pi / 2, "phi_dot_start": -20.0, "mu_max": 0.5, "mu_slide": 0.4}
+    lock = Schedule(((0.0, {"M_brake": 100.0}),))
+    run = library.simulate([0, 0.05, 1.0], tolerance, lock, **upright, formulation=formulation)
+    _, soon, later = np.abs(run["theta"] - pi / 2)
+    within(soon, 32 * EPSILON, "lean soon, rad")
+    within(later, 1e-10, "lean at 1 s, rad")
+    assert (run["contact_mode"] == 1).any()
 
 
 # ---- the end of a slip ----
