@@ -14,9 +14,11 @@ string(REPLACE windows win wheel_platform ${wheel_platform})
 function(add_fmu target)
   set(fmu ${CMAKE_BINARY_DIR}/wheel.fmu)
   set(packer ${CMAKE_SOURCE_DIR}/cmake/pack_fmu.py)
-  file(GLOB_RECURSE contents CONFIGURE_DEPENDS fmu-src/archive/*)
+  as_pattern(archive ${CMAKE_SOURCE_DIR}/fmu-src/archive)
+  file(GLOB_RECURSE contents CONFIGURE_DEPENDS ${archive}/*)
   # Eigen's licence: beside its headers, or in Debian's package.
   get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  as_pattern(eigen ${eigen})
   file(GLOB eigen_license ${eigen}/COPYING.MPL2 ${eigen}/../../share/doc/libeigen3-dev/copyright)
   set(
     licences
@@ -31,6 +33,7 @@ function(add_fmu target)
     OUTPUT ${fmu}
     COMMAND ${Python3_EXECUTABLE} ${packer} ${fmu} ${wheel_platform} $<TARGET_FILE:${target}> ${licences}
     COMMAND_EXPAND_LISTS
+    VERBATIM
     DEPENDS ${target} ${packer} ${contents} modelDescription.xml LICENSE
     COMMENT "Packing wheel.fmu"
   )

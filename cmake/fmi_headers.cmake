@@ -3,11 +3,14 @@ set(Python3_FIND_VIRTUALENV FIRST)
 if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/python)
   set(Python3_EXECUTABLE ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/python)
 endif()
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
+find_package(Python3 QUIET COMPONENTS Interpreter)
 
 set(packages ${Python3_SITELIB} ${Python3_SITEARCH})
 list(TRANSFORM packages APPEND /fmpy/c-code)
 find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${packages} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT FMI2_INCLUDE_DIR)
-  message(FATAL_ERROR "fmi2Functions.h is missing: run ./scripts/setup, or set FMI2_INCLUDE_DIR to its folder.")
+  message(
+    FATAL_ERROR
+    "fmi2Functions.h is missing: ./scripts/setup installs it and all else; or set FMI2_INCLUDE_DIR to its folder."
+  )
 endif()

@@ -7,6 +7,7 @@ add_custom_command(
   OUTPUT ${VARIABLE_ROWS}
   COMMAND ${Python3_EXECUTABLE} ${made_from} ${VARIABLE_ROWS}
   DEPENDS ${made_from}
+  VERBATIM
   COMMENT "Writing the rows of modelDescription.xml"
 )
 add_custom_target(variable_rows DEPENDS ${VARIABLE_ROWS})
