@@ -2,6 +2,7 @@
 
 import os
 import resource
+import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -36,6 +37,17 @@ def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "local: neither for a release nor under the sanitizers, needs a local build")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Once, before processes start and tests are imported: the release build is that of the sources. A build that
+    WHEEL_BUILD names is tested as it is."""
+    if "WHEEL_BUILD" in os.environ or hasattr(session.config, "workerinput"):
+        return
+    command = ["bash", ROOT / "scripts" / "build", "release"]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode:
+        pytest.exit(done.stdout, 1)
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
