@@ -65,7 +65,4 @@ function(add_sundials)
   # SUNDIALS writes the time of its configuration into a header; a fixed one, else each configuration compiles it anew.
   set(ENV{SOURCE_DATE_EPOCH} 315532800) # 1980-01-01
   add_subdirectory(${source} ${CMAKE_BINARY_DIR}/_sundials/build EXCLUDE_FROM_ALL SYSTEM)
-  # The private headers hold CVODE's memory record: solver/cvode_history.cpp alone reads them, for snapshots.
-  add_library(sundials_private INTERFACE)
-  target_include_directories(sundials_private SYSTEM INTERFACE ${source}/src/cvode ${source}/src/sundials)
 endfunction()

@@ -48,6 +48,7 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   problem.longest_step *= shortening;
   *this = Orbit();
+  std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
   if (rests(problem, own)) return result_ = Result::steady;
   result_ = follow(problem, pass, own, solver);
   counters_ = solver.counters();
@@ -82,7 +83,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
   }
 }
 
-// To the end of a step, past the events after which the motion goes on; fails if these are too many to be kept.
+// To the end of a step, past the events after which the motion goes on.
 solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
@@ -91,9 +92,10 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
     solver.read(solver.known_until(), y);
     const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.known_until(), y);
     if (consequence == solver::Consequence::ends) return outcome;
-    if (consequence == solver::Consequence::bends || !recurrences_[solver.event()].take(solver.known_until()))
-      return solver::Outcome::failed;
-    recurs_ = true;
+    if (consequence == solver::Consequence::bends) return solver::Outcome::failed;
+    const double t = solver.known_until();
+    first_time_ = std::fmin(first_time_, t);
+    first_times_[solver.event()] = std::fmin(first_times_[solver.event()], t);
     solver.resume();
   }
 }

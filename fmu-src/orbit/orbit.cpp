@@ -23,7 +23,7 @@ bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   return maps(problem, t, own, t, y, rate);
 }
 
-// What the sums need, from the states at T1 and T2, and the recurring events.
+// What the sums need, from the states at T1 and T2.
 void Orbit::take_half() {
   half_ = {};
   read_own(T1_, first_);
@@ -33,7 +33,6 @@ void Orbit::take_half() {
   pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
   first_turn_ = std::polar(1.0, first_[psi]);
   mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
-  for (Recurrence& recurrence : recurrences_) recurrence.repeat(T1_, T2_);
 }
 
 // The k halves before it are the integrated one and its mirror image in turn. A pair of them turns the path by 2 delta;

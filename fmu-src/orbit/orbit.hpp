@@ -23,7 +23,6 @@
 
 #include <complex>
 
-#include "recurrence.hpp"
 #include "solver.hpp"
 #include "track.hpp"
 
@@ -38,9 +37,8 @@ class Orbit {
   //   that have not the symmetry. The caller then steps through the motion from its start.
   enum class Result { refused, unfolded, steady, ended };
 
-  // What follows from an event at t and y, for the owner to decide. One after which the motion goes on recurs: it is
-  // the fall of a function that rises at the next such event and falls again at the third, as N does. Where the motion
-  // bends it cannot be unfolded.
+  // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be
+  // unfolded.
   using Pass = solver::Consequence (*)(void* owner, int event, double t, double* y);
 
   // Integrates `problem` (the reduced form of a wheel) from y0 by DOP853. The solver has to be started
@@ -61,9 +59,10 @@ class Orbit {
   // rad/s, the larger of the mean rates of psi and phi; unfolded or steady.
   double fastest_turn() const;
 
-  // Whether some event recurs, and the instants at which one does.
-  bool recurs() const { return recurs_; }
-  const Recurrence& recurrence(int event) const { return recurrences_[event]; }
+  // s, when an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
+  // each mirror image.
+  double first_time_of(int event) const { return first_times_[event]; }
+  double first_time() const { return first_time_; }
 
  private:
   enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
@@ -117,8 +116,7 @@ class Orbit {
   Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
   Complex displacement_;                             // from O(T1) to O(T2), seen along psi(T1)
 
-  bool recurs_ = false;
-  Recurrence recurrences_[solver::max_watched + 1] = {};  // by event
+  double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
 
   mutable Half half_;  // that of the last reading, a function of its number alone
 };

@@ -2,6 +2,7 @@
 #include "cvode_engine.hpp"
 
 #include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
@@ -24,9 +25,6 @@ constexpr double keep_step_above = 0.9999, keep_step_below = 1.02;
 // Share of the step's error that the corrector may leave: half of CVODE's default of 0.1. Two evaluations per step are
 // then the rule, which saves more in steps than it costs.
 constexpr double corrector_share = 0.05;
-
-// A step that meets the thin layer of a regularized law shrinks many times over before it fits.
-constexpr int most_failures = 30;
 
 // Adams methods above this order gain nothing on the wheel's scenes, and prediction costs the square of the order.
 constexpr int highest_adams_order = 9;
@@ -75,12 +73,11 @@ long jacobians_of(const CvodeObjects& o) {
 bool set_up(CvodeObjects& o, Method method) {
   if (SUNContext_Create(SUN_COMM_NULL, &o.context) != SUN_SUCCESS) return false;
   SUNContext_ClearErrHandlers(o.context);  // nothing is printed
-  o.y = make_vector(o.states, o.context);
+  o.y = N_VNew_Serial(o.states, o.context);
   o.cvode = CVodeCreate(method == Method::adams ? CV_ADAMS : CV_BDF, o.context);
   return o.y && o.cvode && CVodeInit(o.cvode, derivative, 0, o.y) == CV_SUCCESS &&
          CVodeSetUserData(o.cvode, &o.call) == CV_SUCCESS && CVodeWFtolerances(o.cvode, weights) == CV_SUCCESS &&
-         attach_solver(o, method) && CVodeSetMaxErrTestFails(o.cvode, most_failures) == CV_SUCCESS &&
-         CVodeSetMaxConvFails(o.cvode, most_failures) == CV_SUCCESS &&
+         attach_solver(o, method) &&
          CVodeSetEtaFixedStepBounds(o.cvode, keep_step_above, keep_step_below) == CV_SUCCESS;
 }
 
@@ -109,42 +106,63 @@ bool Cvode::start(const Problem& problem) {
   return objects_ && CVodeSetMaxStep(objects_->cvode, problem.longest_step) == CV_SUCCESS;
 }
 
+// The solution starts from nothing at the end of the last step.
+int Cvode::start_at(const Step& step) {
+  start_ = step.end;
+  std::copy_n(step.y_end, objects_->states, y_start_);
+  steps_ = 0;
+  std::copy_n(y_start_, objects_->states, data(objects_->y));
+  return CVodeReInit(objects_->cvode, start_, objects_->y);
+}
+
+// One step from t to the new t, in o.y. The size of CVODE's first step depends on the time it is asked for, so it is
+// always asked for the same time ahead. At a state that is zero that size is next to nothing, and shorter than the
+// rounding of time.
+int Cvode::make_step(double stop, double* t) {
+  const CvodeObjects& o = *objects_;
+  const double longest = o.call.problem->longest_step;
+  int flag = std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
+  if (flag >= 0) flag = CVodeSetMinStep(o.cvode, std::fmin(rounding_at(*t), longest));
+  return flag < 0 ? flag : CVode(o.cvode, *t + longest, o.y, t, CV_ONE_STEP);
+}
+
 bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
   CvodeObjects& o = *objects_;
   o.call = {&problem, counters, INFINITY};
-  double t = step->end;
-  int flag = CV_SUCCESS;
-  // Where the slope of an input has changed, a history of high order can fail. Then one more attempt starts anew.
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const bool first = next_ != Next::goes_on;
-    if (next_ == Next::starts_after_stop) ++counters->restarts;
-    if (first) {
-      std::copy_n(step->y_end, o.states, data(o.y));
-      flag = CVodeReInit(o.cvode, step->end, o.y);
-      next_ = Next::goes_on;
-    }
-    if (flag >= 0) flag = std::isfinite(stop) ? CVodeSetStopTime(o.cvode, stop) : CVodeClearStopTime(o.cvode);
-    // At a state that is zero CVODE's first step is next to nothing, and shorter than the rounding of time.
-    if (flag >= 0) flag = CVodeSetMinStep(o.cvode, std::fmin(rounding_at(step->end), problem.longest_step));
-    if (flag < 0) break;
-    const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
-    // The size of CVODE's first step depends on the time it is asked for, so it is always asked for the same time
-    // ahead.
-    flag = CVode(o.cvode, step->end + problem.longest_step, o.y, &t, CV_ONE_STEP);
-    counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
-    if (flag >= 0 || first || (flag != CV_ERR_FAILURE && flag != CV_CONV_FAILURE)) break;
-    next_ = Next::starts_after_stop;
-  }
+  if (next_ == Next::starts_after_stop) ++counters->restarts;
+  const bool first = next_ != Next::goes_on || steps_ == most_steps;
+  int flag = first ? start_at(*step) : CV_SUCCESS;
+  const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
+  if (flag >= 0) flag = make_step(stop, &step->end);
+  counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
   failure_ = reason_of(flag);
-  if (flag < 0) {
-    next_ = Next::starts;
-    return false;
-  }
-  step->end = t;
+  next_ = flag < 0 ? Next::starts : flag == CV_TSTOP_RETURN ? Next::starts_after_stop : Next::goes_on;
+  if (flag < 0) return false;
+  ++steps_;
   std::copy_n(data(o.y), problem.states, step->y_end);
   step->lowest_margin = o.call.lowest_margin;
-  next_ = flag == CV_TSTOP_RETURN ? Next::starts_after_stop : Next::goes_on;
   return true;
+}
+
+// Read, the steps since the last start are made again, bit-identically: none of them ended at a stop.
+void Cvode::visit(support::Archive& archive, const Problem& problem, const Step& step) {
+  Next next = next_;
+  archive.count(next, 0, static_cast<int>(Next::starts_after_stop));
+  if (archive.reads() && !start(problem)) return archive.refuse();
+  if (next != Next::goes_on) {
+    next_ = next;
+    return;
+  }
+  archive.number(start_);
+  archive.numbers(y_start_, problem.states);
+  archive.count(steps_, 1, most_steps);
+  if (!archive.reads() || !archive.fits()) return;
+  Counters uncounted = {};
+  Step again;
+  again.set_point(start_, y_start_, problem.states);
+  for (int left = steps_; left > 0; --left)
+    if (!advance(problem, never, &uncounted, &again)) return archive.refuse();
+  if (again.end != step.end) archive.refuse();
 }
 
 void Cvode::expand(const Problem& problem, Step* step) {

@@ -27,9 +27,6 @@ struct CvodeObjects {
   SUNLinearSolver linear;        // BDF
 };
 
-// A vector of `states` entries, zero, in one block (cvode_vector.cpp). Null where there is no memory.
-N_Vector make_vector(int states, SUNContext context);
-
-inline double* data(N_Vector v) { return static_cast<double*>(v->content); }
+inline double* data(N_Vector v) { return N_VGetArrayPointer(v); }
 
 }  // namespace solver

@@ -21,16 +21,15 @@ Consequence pass_event(Wheel& wheel, Event event) {
   const EventRow& row = row_of(event);
   const InForce before = run.in_force;
   const Consequence consequence = pass(row, wheel.setup, run.t, run.y, run.in_force);
-  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) count_event(wheel, event, run.t);
+  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) observe(wheel, event, run.t);
   log_changes(wheel, before, event);
   return consequence;
 }
 
-void count_event(Wheel& wheel, Event event, double t) {
-  Tally& tally = wheel.run.tallies[static_cast<int>(event)];
-  tally.last = t;
-  if (tally.count++ >= logged_one_by_one) return;
-  wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel, t), row_of(event).observed);
+void observe(Wheel& wheel, Event event, double t) {
+  bool& observed = wheel.run.observed[static_cast<int>(event)];
+  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel, t), row_of(event).observed);
+  observed = true;
 }
 
 void log_changes(Wheel& wheel, const InForce& before, Event by) {
@@ -80,9 +79,10 @@ void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y) {
 }
 
 void log_ending(Wheel& wheel, Event event) {
+  constexpr long long most_logged = 100;
   const Run& run = wheel.run;
   const Setup& setup = wheel.setup;
-  if (wheel.endings++ >= logged_one_by_one) return;
+  if (wheel.endings++ >= most_logged) return;
   constexpr double rounding = 1e-15;  // of the cosine of a right angle
   if (event == Event::lies_flat && setup.tilting == 0 &&
       std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
@@ -92,18 +92,9 @@ void log_ending(Wheel& wheel, Event event) {
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
                      ending_of(run.in_force, event).text, wheel.time(),
                      Digits{run.y[setup.formulation->tilt_index], 6});
-  if (wheel.endings == logged_one_by_one)
+  if (wheel.endings == most_logged)
     wheel.reporter.log(Topic::discard, "%lld ends were logged; further ones are not logged until a reset.",
-                       logged_one_by_one);
-}
-
-void log_summaries(const Wheel& wheel) {
-  for (const EventRow& row : event_rows) {
-    const Tally& tally = wheel.run.tallies[static_cast<int>(row.event)];
-    if (row.observed && tally.count > logged_one_by_one)
-      wheel.reporter.log(Topic::warning, "%lld times, of which the first %lld were logged, last at t = %s s: %s.",
-                         tally.count, logged_one_by_one, instant_of(wheel, tally.last), row.observed);
-  }
+                       most_logged);
 }
 
 Ending ending_of(const InForce& now, Event event) {

@@ -4,8 +4,8 @@
 //   stage           writes, besides the solution
 //   apply_demand    run: in_force, phase (an orbit is left), last_change, transitions; demand.changed
 //   set_in_motion   run: phase, counted
-//   proceed         run: t, y, in_force, tallies, transitions, at events that do not end the run
-//   arrive          run: t, tallies; demand: inputs and changed, where an input varies
+//   proceed         run: t, y, in_force, observed, transitions, at events that do not end the run
+//   arrive          run: t, observed; demand: inputs and changed, where an input varies
 //   end             run: t, y, phase, ended_by, counted
 //   fail            run: as before the step, but for the phase; demand.changed: as before
 #include <algorithm>
@@ -114,36 +114,27 @@ Outcome set_in_motion(Wheel& w) {
   return Outcome::stepped;
 }
 
-// Counts and logs what is observed on the orbit up to t.
+// Logs what is observed on the orbit up to t.
 void observe_orbit(Wheel& w, double t) {
   for (const EventRow& row : event_rows) {
-    const int event = static_cast<int>(row.event);
-    const orbit::Recurrence& recurrence = w.orbit.recurrence(event);
-    Tally& tally = w.run.tallies[event];
-    const long long falls = recurrence.falls_until(t);
-    while (tally.count < std::min(falls, logged_one_by_one)) count_event(w, row.event, recurrence.fall(tally.count));
-    if (falls > tally.count) tally = {falls, recurrence.fall(falls - 1)};
+    const double first = w.orbit.first_time_of(static_cast<int>(row.event));
+    if (first <= t) observe(w, row.event, first);
   }
 }
 
 void move_to(Wheel& w, double t) {
-  if (w.run.phase == Phase::unfolded && w.orbit.recurs()) observe_orbit(w, t);
+  if (w.run.phase == Phase::unfolded && w.orbit.first_time() <= t) observe_orbit(w, t);
   w.run.t = t;
 }
 
-// Latest end of the next step on the way to t, s.
+// Latest end of the next step on the way to t, s: where an input varies, t, where its polynomial may end, and no step
+// goes across a corner of a brake's. One next to the time reached has been met.
 double stop_of(const Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
-  const solver::Solver& solver = w.solver;
-  // CVODE may step past the communication point although an input varies: the input's polynomial may go on there, and
-  // a step that is cut short costs CVODE its history. Runge-Kutta has no history to lose.
-  double stop = inputs.varies && solver.method() == solver::Method::runge_kutta ? t : solver::never;
-  if (inputs.varies && inputs.braked) {
-    // No step goes across a corner of a prescribed input. One next to the time reached has been met.
-    const double reached = solver.known_until(), ahead = 2 * w.setup.longest_step;
-    stop = std::fmin(stop, inputs.corner(reached + solver::rounding_at(reached) + 1e-12 * ahead, reached + ahead));
-  }
-  return stop;
+  if (!inputs.varies) return solver::never;
+  if (!inputs.braked) return t;
+  const double reached = w.solver.known_until(), ahead = 2 * w.setup.longest_step;
+  return std::fmin(t, inputs.corner(reached + solver::rounding_at(reached) + 1e-12 * ahead, reached + ahead));
 }
 
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.

@@ -84,12 +84,6 @@ struct InForce {
   }
 };
 
-// How often an observed event has occurred, and when it last did, s, own clock.
-struct Tally {
-  long long count = 0;
-  double last = 0;
-};
-
 struct Run {
   Phase phase = Phase::created;
   Event ended_by = Event::none;
@@ -99,9 +93,9 @@ struct Run {
   double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, own clock: from when on mu_required is looked at; infinite after its warning
   double y[WHEEL_MAX_STATES] = {};
-  Tally tallies[event_count] = {};
-  long long transitions = 0;      // of the friction, rolling and sliding
-  solver::Counters counted = {};  // before the solver was last started from nothing
+  bool observed[event_count] = {};  // has occurred, and was logged
+  long long transitions = 0;        // of the friction, rolling and sliding
+  solver::Counters counted = {};    // before the solver was last started from nothing
 };
 
 // The counts of a run, those of the solver at work included.

@@ -53,8 +53,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive.numbers(run.y, WHEEL_MAX_STATES);
   for (int i = 0; i < event_count; ++i) {
     archive.count(now.below[i], 0, 1);
-    archive.tally(run.tallies[i].count);
-    archive.number(run.tallies[i].last);
+    archive.count(run.observed[i], 0, 1);
   }
   archive.tally(run.transitions);
   for (long long* count : run.counted.all()) archive.tally(*count);

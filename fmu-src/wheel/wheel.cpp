@@ -120,14 +120,10 @@ bool start(Wheel& w) {
 void end_run(Wheel& w, Event event) {
   w.run.ended_by = event;
   freeze(w, Phase::ended);
-  log_summaries(w);
   log_ending(w, event);
 }
 
-void close(Wheel& w) {
-  if (w.run.phase != Phase::ended) log_summaries(w);
-  freeze(w, Phase::closed);
-}
+void close(Wheel& w) { freeze(w, Phase::closed); }
 
 double value_of(Wheel& w, unsigned variable) {
   if (variable < stored_count) return w.demand.value(variable);

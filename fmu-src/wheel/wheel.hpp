@@ -97,10 +97,8 @@ solver::Method method_of(const Setup& setup, const InForce& in_force);
 // The run stands at an event that does not end it: what follows is in force, counted and logged. Writes run.in_force,
 // run.y and the counts.
 solver::Consequence pass_event(Wheel& wheel, Event event);
-// Counts an observed event at t, s, own clock; the first `logged_one_by_one` of each are logged, a rule that no
-// communication grid changes.
-inline constexpr long long logged_one_by_one = 100;
-void count_event(Wheel& wheel, Event event, double t);
+// An observed event at t, s, own clock: the first of a run is logged.
+void observe(Wheel& wheel, Event event, double t);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
 // spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
 void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
@@ -113,8 +111,6 @@ void look_at_grip(Wheel& wheel, double t);
 void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y);
 // Of an ending; of very many, as of a search that goes back and tries again, the first ones alone. Writes endings.
 void log_ending(Wheel& wheel, Event event);
-// At the end of a run: the observed events that were not logged one by one.
-void log_summaries(const Wheel& wheel);
 // What ended a run, to stand behind "the wheel", with its limit.
 struct Ending {
   char text[96];

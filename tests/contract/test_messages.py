@@ -57,13 +57,6 @@ def warnings(library: Library) -> Iterator[Case]:
     _, lift_off = ended(library, **PULLED | {"keep_contact": False})
     w = started(library, **PULLED).to(lift_off + 1e-3)
     yield "t = … s: ….", w.said(), [lift_off, PULLS]
-    w = started(library, **PULLED).to(START + 100)
-    instants = [float(text.split()[2]) for text in w.texts()]
-    period = (instants[96] - instants[0]) / 24  # with four of them
-    later = [t + k * period for t in instants[:4] for k in range(200) if t + k * period < START + 100]
-    assert w.terminate() == OK
-    text = "… times, of which the first … were logged, last at t = … s: …."
-    yield text, w.said(), [len(later), 100, max(later), PULLS]
     w = started(library, **ROLLING).give({"M_brake": (FULL - 20, 200.0)}).to(START + 0.3)
     t = float((said := w.said()).split()[2])
     text = "t = … s: mu_required = …, more than a dry road gives; mu_max = 0 sets no limit."

@@ -30,8 +30,8 @@ class Orbit:
     """One free wheel, built at once; `kind` is what came of it."""
 
     # Of probe.cpp, by the names after `probe_`.
-    RESULTS = {"make": c_void_p, "falls_until": c_longlong, "steps": c_longlong}
-    RESULTS |= dict.fromkeys(("half_period", "fall"), c_double)
+    RESULTS = {"make": c_void_p, "steps": c_longlong}
+    RESULTS |= dict.fromkeys(("half_period", "first_fall"), c_double)
 
     def __init__(self, library: ctypes.CDLL, wheel=None, start=None, tolerance=1e-8, keep_contact=False) -> None:
         self.library = library
@@ -63,11 +63,9 @@ class Orbit:
     def __call__(self, t: Array | list[float]) -> Array:
         return self.read(t)[0]
 
-    def falls_until(self, t: float) -> int:
-        return self.library.probe_falls_until(self.probe, c_double(t))
-
-    def fall(self, n: int) -> float:
-        return self.library.probe_fall(self.probe, c_longlong(n))
+    def first_fall(self) -> float:
+        """The instant at which N first falls below zero, or infinity."""
+        return self.library.probe_first_fall(self.probe)
 
 
 def reduced(row: Array) -> Array:

@@ -94,11 +94,8 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
 }
 
 PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
-// Of N, the only event that recurs.
-PUBLIC long long probe_falls_until(Probe* probe, double t) {
-  return probe->orbit.recurrence(static_cast<int>(wheel::Event::lost_contact)).falls_until(t);
-}
-PUBLIC double probe_fall(Probe* probe, long long n) {
-  return probe->orbit.recurrence(static_cast<int>(wheel::Event::lost_contact)).fall(n);
+// Of N, the only event after which the motion goes on.
+PUBLIC double probe_first_fall(Probe* probe) {
+  return probe->orbit.first_time_of(static_cast<int>(wheel::Event::lost_contact));
 }
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }

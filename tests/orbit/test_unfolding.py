@@ -105,43 +105,30 @@ def test_the_energy_is_kept_to_half_the_tolerance_wherever_it_is_read(library, t
 LEAPING = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
 
 
-def test_excursions_below_zero_are_found_at_their_instants_however_late(library: ctypes.CDLL) -> None:
-    orbit = Orbit(library, start=LEAPING, keep_contact=True)
-    assert orbit.kind == "unfolded"
-    t = np.linspace(0, 12 * orbit.half_period, 20_001)
-    N = orbit.read(t)[1]
-    falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
-    found = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
-    assert len(found) == len(falls) >= 6
-    assert (np.abs(falls - found) <= t[1]).all()
-    # Less than one part in 1e9 of the weight, 196 N, counts as zero.
-    within(np.abs(orbit.read(found)[1]).max(), 4e-7, "normal force at the falls, N")
-    late = orbit.falls_until(1e6)
-    assert orbit.fall(late - 1) <= 1e6 < orbit.fall(late)
-    apart = orbit.fall(late - 1) - orbit.fall(late - 1 - len(found) // 6)
-    within(abs(apart - 2 * orbit.half_period), 5e-10, "two late falls a period apart, s")
-    assert orbit.falls_until(np.nextafter(orbit.fall(late - 1), 0)) == late - 1
-
-
-# At its highest N is just above zero, a few ms before and after below it; on the way up from its lowest.
+# At its highest N is just above zero, a few ms before and after below it: the first fall lies right before a turn.
 CREST = Start(psi=0.0, theta=0.78, psi_dot=5.1512, theta_dot=0.0, phi_dot=4.027)
 
 
-def test_a_fall_right_behind_the_turning_point_counts_once(library: ctypes.CDLL) -> None:
-    """The step that passes the turning point finds it, and so does the mirror."""
-    crest = Orbit(library, start=CREST, keep_contact=True)
-    theta, theta_dot, omega_2, omega_3 = crest([0.8 * crest.half_period])[0, :4]
+@pytest.mark.parametrize("start", [LEAPING, CREST], ids=["leaping", "crest"])
+def test_the_first_fall_of_the_normal_force_below_zero_is_found_at_its_instant(library: ctypes.CDLL, start) -> None:
+    orbit = Orbit(library, start=start, keep_contact=True)
+    assert orbit.kind == "unfolded"
+    t = np.linspace(0, 2 * orbit.half_period, 40_001)
+    N = orbit.read(t)[1]
+    first = orbit.first_fall()
+    within(abs(first - t[1:][(N[:-1] >= 0) & (N[1:] < 0)][0]), t[1], "instant off that of the samples, s")
+    # Less than one part in 1e9 of the weight, 196 N, counts as zero.
+    within(abs(orbit.read([first])[1][0]), 4e-7, "normal force at the fall, N")
+
+
+def test_where_the_ground_pulls_from_the_start_it_is_observed_there_and_where_it_never_pulls_never(library) -> None:
+    leaping = Orbit(library, start=LEAPING, keep_contact=True)
+    low = leaping.first_fall() + 1e-3
+    theta, theta_dot, omega_2, omega_3 = leaping([low])[0, :4]
     psi_dot = omega_2 / sin(theta)
     start = Start(theta=theta, psi_dot=psi_dot, theta_dot=theta_dot, phi_dot=omega_3 - psi_dot * cos(theta))
-    orbit = Orbit(library, start=start, keep_contact=True)
-    t = np.linspace(0, 4 * orbit.half_period, 40_001)
-    N = orbit.read(t)[1]
-    falls = t[1:][(N[:-1] >= 0) & (N[1:] < 0)]
-    turn = 1.2 * orbit.half_period
-    assert orbit.kind == "unfolded" and ((falls > turn) & (falls < turn + 0.01)).sum() == 1
-    found = [orbit.fall(n) for n in range(orbit.falls_until(t[-1]))]
-    assert len(found) == len(falls) == 4
-    assert (np.abs(falls - found) <= t[1]).all()
+    assert Orbit(library, start=start, keep_contact=True).first_fall() == 0
+    assert Orbit(library, keep_contact=True).first_fall() == np.inf
 
 
 def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(library: ctypes.CDLL) -> None:

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, absolute_error, beyond, within
+from support.bounds import EPSILON, beyond, within
 from support.closed_forms import rolling_inertia
 from support.driver import ERROR, OK
 from support.scenes import PAPER
@@ -12,7 +12,6 @@ from support.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g
 PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
-MANY = 100  # pulls that are logged one by one
 
 
 def pulls_of(w):
@@ -23,19 +22,17 @@ def instants_of_pulls(w):
     return [float(sentence.split(" = ")[1].split()[0]) for sentence in pulls_of(w)]
 
 
-@pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
-def test_the_log_of_a_ground_that_pulls_often_does_not_depend_on_the_grid(wheel, method):
+@pytest.mark.parametrize("method", [1, 2, 4], ids=["unfolded", "Adams", "stepped"])
+def test_a_ground_that_pulls_often_is_logged_once_per_run_at_an_instant_that_no_grid_changes(wheel, method):
     logs = []
     for step in (0.25, 4.0, 100.0):
         w = wheel().start(method=method, **PULLING).to(*np.arange(step, 100.0 + step / 2, step))
-        assert len(pulls_of(w)) == MANY
-        restored = wheel().back(w.serialized())
-        assert w.terminate() == restored.terminate() == OK
+        restored = wheel().back(w.serialized()).to(200.0)
+        assert w.terminate() == w.reset() == OK and pulls_of(restored) == []
         logs.append(pulls_of(w))
-        assert pulls_of(restored) == pulls_of(w)[MANY:]  # that the run sums up
-    assert logs[0] == logs[1] == logs[2] and len(logs[0]) == MANY + 1
-    times, last = logs[0][-1].split(" times, "), logs[0][-1].split(" last at t = ")
-    assert int(times[0]) > 300 and 99 < float(last[1].split()[0]) < 100
+        w.start(method=method, **PULLING).to(100.0)  # a run of its own
+        assert pulls_of(w) == 2 * logs[-1]
+    assert logs[0] == logs[1] == logs[2] and len(logs[0]) == 1
 
 
 @pytest.mark.parametrize("phi_dot", [-2.0, -2e4])
@@ -47,17 +44,15 @@ def test_a_ground_that_pulls_by_rounding_alone_is_not_logged(wheel, phi_dot):
 
 @pytest.mark.parametrize("method", [1, 2, 4])
 @pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
-def test_a_restored_run_logs_the_same_pulls(wheel, method, t):
+def test_a_restored_run_logs_a_pull_that_the_saved_one_has_ahead(wheel, method, t):
     """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
     w = wheel().start(method=method, **PULLING).to(t)
     other = wheel().back(w.serialized())
-    w.take_messages()
+    logged = len(pulls_of(w))
     for each in (w, other):
         assert each.put(M_1=1e-6).to(1.0, 3.0).terminate() == OK
-    assert pulls_of(w) == pulls_of(other) and len(pulls_of(w)) > 5
-    assert not any(" times, " in sentence for sentence in pulls_of(w))  # few are not summed up
+    assert len(pulls_of(w)) == 1 and pulls_of(other) == pulls_of(w)[logged:]
     assert w.bits() == other.bits()
-    assert min(instants_of_pulls(w)) > t  # a pull that had begun before is not logged again
 
 
 def test_a_run_whose_orbit_is_built_where_the_ground_pulls_has_the_state_of_one_that_finds_it_built(wheel):
@@ -67,7 +62,7 @@ def test_a_run_whose_orbit_is_built_where_the_ground_pulls_has_the_state_of_one_
     for _ in range(2):
         states.append(w.start(keep_contact=True, **start).to(0.3, 1.0).serialized())
         assert w.terminate() == w.reset() == OK
-    assert len(pulls_of(w)) == 2 * 3
+    assert len(pulls_of(w)) == 2
     assert states[0] == states[1]
 
 
@@ -132,7 +127,7 @@ def test_the_contact_s_velocity_needs_nothing_read_before(wheel):
 
 def test_cuts_of_a_polynomial_at_a_late_start_time_are_no_changes(wheel):
     """At 1e9 s the times of the caller are rounded to 1e-7 s, and so are the values that it sets."""
-    w = wheel().start(start=1e9, method=2, theta_start=pi / 2, phi_dot_start=-8.0)
+    w = wheel().start(start=1e9, method=4, theta_start=pi / 2, phi_dot_start=-8.0)
     for k in range(20):
         w.give({"M_3": (1.0 + 3.0 * 0.03 * k, 3.0)}).to(1e9 + 0.03 * (k + 1))
     assert w.get("n_restarts") == [0]
@@ -185,13 +180,13 @@ def test_a_small_change_of_the_value_or_of_one_derivative_alone_is_taken(wheel, 
 
 
 @pytest.mark.parametrize("kind", [(2, 1, 0.03), (2, 2, 0.0), (3, 2, 0.0), (3, 4, 0.03)], ids=str)
-def test_each_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
+def test_the_first_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(wheel, kind):
     formulation, method, s = kind
     values = {"theta_start": pi / 2, "phi_dot_start": -8.0, "keep_contact": True, "formulation": formulation}
     w = wheel().start(method=method, s=s, **values)
     ramps = {0.0: 0.0, 0.1: WEIGHT / 0.025, 0.15: 0.0, 0.3: WEIGHT / 0.05, 0.4: 0.0}
     assert play(w, [(begin, {"F_Z": (0.0, ramp)}) for begin, ramp in ramps.items()], 0.5) == OK
-    assert np.allclose(instants_of_pulls(w), [0.125, 0.35], rtol=0, atol=1e-8)
+    assert np.allclose(instants_of_pulls(w), [0.125], rtol=0, atol=1e-8)
     prevented = wheel().start(method=method, s=s, **values)
     for k in range(20):  # a ramp that would lift the wheel, taken back at every step
         prevented.give({"F_Z": (0.0, WEIGHT / 0.006)}).to(0.005 * (k + 1))
@@ -199,14 +194,9 @@ def test_each_pull_is_logged_at_its_instant_and_none_that_an_input_prevents(whee
 
 
 def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel_too(wheel):
-    """A wheel that tips fast is off the ground at once; unfolded (method automatic) or stepped through, seven pulls."""
+    """A wheel that tips fast is off the ground at once; unfolded (method automatic) or stepped through."""
     fast = {"theta_start": 1.48, "psi_dot_start": -1.52, "theta_dot_start": -6.5, "phi_dot_start": 4.4}
-    logged = []
-    for method in (1, 1, 2, 4):
+    for method, steps in ((1, 20), (1, 1), (2, 1), (4, 1)):  # twice unfolded: whatever the steps
         w = wheel().start(keep_contact=True, method=method, **fast)
-        steps = 1 if logged else 20  # twice unfolded: whatever the steps
         assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
-        logged.append(instants_of_pulls(w))
-    assert logged[0][0] == 0.0 and len(logged[0]) == 7
-    for other in logged[1:]:
-        within(absolute_error(other, logged[0]), 2e-8, "instants of the pulls apart, s")
+        assert instants_of_pulls(w) == [0.0]

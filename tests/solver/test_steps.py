@@ -117,3 +117,17 @@ def test_rates_that_are_not_finite_are_named_as_the_reason(solver, method):
     one.restart(2.0, [1.0])  # behind the instant from which its rate is no number
     assert one.run(3.0) == FAILED
     assert one.failure == "the rates of the states are not finite"
+
+
+@pytest.mark.parametrize("name", ["adams", "bdf"])
+@pytest.mark.parametrize("steps", [1, 40, 10_000, 10_001])
+def test_cvode_goes_on_from_bytes_with_the_same_bits_also_where_it_has_started_anew(solver, name, steps):
+    """After 10,000 steps, so that no more than these are made again."""
+    one = solver(name, longest_step=1e-3)
+    one.run(inf, steps)
+    other = one.copied()
+    for _ in range(20):
+        one.step()
+        other.step()
+        t = 0.5 * (one.now.begin + one.now.known)
+        assert one.now == other.now and one.read(t) == other.read(t)
