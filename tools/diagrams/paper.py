@@ -9,7 +9,7 @@ of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degree
 
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from multiprocessing import Pool
@@ -25,6 +25,7 @@ from diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, variables
 
 RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
+SOLVING = ("formulation", "method")  # the same motion by another system or solver
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MARGIN = 2.0  # mm beside a caption
 PITCH = 3.4  # mm from one line of a caption to the next
@@ -62,10 +63,16 @@ LOADS = (
 )
 
 
+def set_otherwise(scene: Scene, names: Iterable[str]) -> list[str]:
+    """What differs from the start values of the description."""
+    own = {name: scene.value(name) for name in names}
+    return [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
+
+
 def unlike_paper(scene: Scene) -> list[str]:
     """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
-    own = {name: scene.value(name) for name in SETTINGS if name != "s"}
-    said = [SETTINGS[name].said(value) for name, value in own.items() if abs(value - SETTINGS[name].preset) > 1e-12]
+    own = {name: scene.value(name) for name in SETTINGS if name not in ("s", *SOLVING)}
+    said = set_otherwise(scene, own)
     rows = {} if scene.ending else {"stop_time": scene["time"][-1]}
     rows["output_interval"] = scene["time"][1] - scene["time"][0]
     said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
@@ -144,6 +151,8 @@ def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: fl
     texts = [f"Parameters: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
     if other := unlike_paper(scenes[-1]):
         texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
+    if solving := set_otherwise(scenes[-1], SOLVING):
+        texts.append(f"Computed with {', '.join(said.replace(' ', NO_BREAK) for said in solving)}.")
     shared = [one for one in dict.fromkeys(remarks[0]) if all(one in said for said in remarks)]
     for scene, said in zip(scenes, remarks, strict=True):
         own = [one for one in dict.fromkeys(said) if one not in shared]

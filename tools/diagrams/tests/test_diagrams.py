@@ -108,11 +108,17 @@ def test_a_wheel_that_cannot_exist_is_drawn_with_a_warning(values: dict[str, flo
 DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
 
 
-@pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s"}))
+@pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s", *paper.SOLVING}))
 def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
     other = scene(0.03, **{name: DIFFERENT[paper.SETTINGS[name].type]})
     assert f"{name} = " in caption(other)
     assert not paper.is_paper([other, other])
+
+
+@pytest.mark.parametrize("name", paper.SOLVING)
+def test_the_papers_scenes_are_the_papers_by_whatever_system_or_method_and_the_caption_states_it(name: str) -> None:
+    scenes = [scene(s, **{name: 3.0}) for s in (0.0, 0.03)]
+    assert paper.is_paper(scenes) and f"Computed with {name} = 3" in caption(scenes[1])
 
 
 def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes() -> None:
