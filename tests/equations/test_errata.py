@@ -4,39 +4,12 @@ The numpy transcription of (1)-(24) keeps a misprint on request; the paper's fre
 SciPy. test_paper_matrices.py has the mended matrices.
 """
 
-from functools import cache
-
 import numpy as np
-from equations.paper_transcription import THETA, Paper, paper_table, papers_state, states, times, transposed
-from scipy.integrate import solve_ivp
-from support import equations as eq
+from equations.misprints import WHEEL, papers_start, rolled
+from equations.paper_transcription import THETA, Paper, states, times, transposed
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
-WHEEL = paper_table()
 ENERGY = 75.1168064  # J, at the start of the free wheel
-
-
-def papers_start() -> np.ndarray:
-    return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), eq.PAPER_START))
-
-
-@cache
-def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Instants, states and energies of the free wheel, with the named misprints kept.
-
-    Ends early where O reaches the ground: Z_O = 0.
-    """
-
-    def rate(_t: float, y: np.ndarray) -> np.ndarray:
-        return np.concatenate([y[6:], Paper(WHEEL, y, printed).solve()[:6]])
-
-    def above_ground(_t: float, y: np.ndarray) -> float:
-        return y[2]
-
-    above_ground.terminal = True
-    times_out = np.linspace(0, end, 501)
-    run = solve_ivp(rate, (0, end), papers_start(), "DOP853", times_out, events=above_ground, rtol=1e-9, atol=1e-9)
-    return run.t, run.y.T, Paper(WHEEL, run.y.T).energy
 
 
 def test_mended_the_free_wheel_keeps_its_energy_and_stays_on_the_ground() -> None:

@@ -11,6 +11,8 @@ from contextlib import contextmanager
 
 import numpy as np
 import pandas as pd
+from equations.misprints import rolled
+from equations.paper_transcription import THETA
 from matplotlib.axes import Axes
 from reference import Wheel
 from support.closed_forms import critical_spin, fall_time
@@ -120,6 +122,37 @@ def energy(report: Report) -> Row:
     return figures | {"held_share": 100 * np.mean(sticks)}
 
 
+MISPRINTS = {  # as printed: name in the transcription, colour, duration in s
+    "corrected": ((), style.INK, 10.0),
+    "(5)": (("U_theta",), style.VERMILLION, 10.0),
+    "(9)": (("Q_theta",), style.GREEN, 10.0),
+    "(16), sign": (("F_beta",), style.BLUE, 1.0),
+    "(16), bracket": (("F_beta_bracket",), style.ORANGE, 10.0),
+}
+
+
+@part(30)
+def misprints(report: Report) -> Row:
+    """what each misprint of the paper does to its free wheel, by the numpy transcription of its equations"""
+    found = {name: rolled(duration, *printed) for name, (printed, _, duration) in MISPRINTS.items()}
+    with picture(report, "errata_motion", "abc", 62.0) as (tilt, height, energy):
+        for name, (t, y, E) in found.items():
+            colour, first = MISPRINTS[name][1], name == "corrected"
+            look = {"color": colour, "lw": 2.2 if first else 1.0, "alpha": 0.4 if first else 1.0, "label": name}
+            for ax, values in ((tilt, np.degrees(y[:, THETA])), (height, y[:, 2]), (energy, E)):
+                ax.plot(t, values, **look)
+                if t[-1] < MISPRINTS[name][2] - 0.1:
+                    ax.plot(t[-1], values[-1], "x", color=colour, ms=5)
+        label(tilt, TIME, r"$\theta$ [deg]", "Angle between axle and vertical", xlim=(0, 10))
+        label(height, TIME, "$Z_O$ [m]", "Height of O; ×: at the ground", xlim=(0, 10), ylim=(0, None))
+        label(energy, TIME, ENERGY, "Energy", xlim=(0, 10))
+        plots.legend_below(tilt.figure, [tilt], 5)
+    least = np.degrees(found["(16), bracket"][1][:, THETA].min())
+    grown = found["(9)"][2].max() / found["(9)"][2][0]
+    ground = {f"misprint_{n}": found[name][0][-1] for n, name in (("5", "(5)"), ("16", "(16), sign"))}
+    return ground | {"misprint_9": grown, "misprint_16_bracket": least}
+
+
 @part(2)
 def path(report: Report) -> Row:
     """the path of the contact point without and with friction"""
@@ -151,7 +184,7 @@ def tipping(report: Report) -> Row:
     tilted = lean(run(report, 15, theta_start=UPRIGHT - 1e-9, **rolling)).max()
     by_method = [run(report, 12, 5e-3, method=method, **rest).t[-1] for method in (2, 3, 4)]
     tips = {"tips": found.t[-1], "tips_first": min(by_method), "tips_last": max(by_method)}
-    tips |= {"tips_exact": fall_time(PAPER, UPRIGHT)}
+    tips |= {"tips_exact": fall_time(PAPER, UPRIGHT), "tips_leaning": fall_time(PAPER, UPRIGHT - np.radians(1))}
     return tips | {"tipping_rate": TIPPING, "tips_rolling_tilted": np.degrees(tilted)}
 
 
