@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <limits>
 
 #include "law.hpp"
 #include "wheel.hpp"
@@ -12,23 +14,26 @@
 namespace wheel {
 namespace {
 
-// f at four places, in steps from x, and their weights, exact for polynomials of degree four: about x, or to one side
-// where a limit is near.
+// f at four places, in steps from x, and their weights: for the slope, exact for polynomials of degree four, and for a
+// sum of third and fourth differences, which shows a bend; about x, or to one side where a limit is near.
 struct Stencil {
   int places[4];
-  double weights[4];
+  double weights[4], bend[4];
 };
-constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}},
-                                {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}},
-                                {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}}};
+constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, {0.5, -3, -5, 1.5}},
+                                {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}, {-2.5, 4.5, -3.5, 1}},
+                                {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}, {-2.5, 4.5, -3.5, 1}}};
 
-// The derivatives of the variables that are asked for, and behind them those of the forces.
+// The derivatives of the variables that are asked for, and behind them those of the forces: of several steps, for each
+// that with the least error.
 struct Pass {
   static constexpr std::size_t computed = variable_count - stored_count,
                                count = computed + sizeof(Force) / sizeof(double);
   using Numbers = std::array<double, count>;
   bool asked[computed] = {};
-  Numbers slope = {};
+  Numbers centre = {}, slope = {}, error;
+
+  Pass() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   double of(unsigned variable) const { return slope[variable - stored_count]; }
 
@@ -42,18 +47,54 @@ struct Pass {
   }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `move_to` leads
-  // `now` to a place, if there is such a wheel. tau_rate: the part of the rate of tau that it leaves out.
+  // `now` to a place, if there is such a wheel.
   template <class MoveTo>
-  bool take(const Stencil& stencil, double x, double h, const Reading& now, const MoveTo& move_to,
-            double tau_rate = 0) {
+  bool take(const Stencil& stencil, double x, double h, const Reading& now, const MoveTo& move_to) {
     if (!move_to(x)) return false;
-    const Numbers centre = sample(now);
-    slope = {};
+    centre = sample(now);
+    Numbers own = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
       if (!move_to(x + stencil.places[k] * h)) return false;
       const Numbers at = sample(now);
-      for (std::size_t i = 0; i < count; ++i) slope[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
+      for (std::size_t i = 0; i < count; ++i) {
+        own[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
+        bend[i] += stencil.bend[k] * (at[i] - centre[i]) / h;
+      }
     }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double size = std::fabs(own[i]);
+      const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
+      // Of a smooth function a bend is of the order h^2, the error h^4.
+      const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / size) + rounding;
+      if (likely >= error[i]) continue;
+      slope[i] = own[i];
+      error[i] = likely;
+    }
+    return true;
+  }
+
+  // Whether smaller steps are of no use; scale: of the variable.
+  bool is_exact(double scale) const {
+    constexpr double relative = 1e-11;
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale))) return false;
+    return true;
+  }
+
+  // Smaller and smaller steps for what bends within the first: the forces of a small spin or slip turn over. One of the
+  // first must be possible.
+  template <class MoveTo>
+  bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
+    constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
+    bool done = false;
+    for (double part = 1e-3; part > (done ? finest : finest_first) && !is_exact(scale); part *= 0.1)
+      done |= std::any_of(std::begin(stencils), std::end(stencils),
+                          [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
+    return done;
+  }
+
+  // What is not linear in the forces follows from them. tau_rate: the part of the rate of tau that is left out.
+  void complete(double tau_rate = 0) {
     slope[variable::tau - stored_count] += tau_rate;
     Force force, rate;
     std::memcpy(&force, &centre[computed], sizeof force);
@@ -61,7 +102,6 @@ struct Pass {
     rate.axle.tau += tau_rate;
     for (unsigned k = 0; k < computed; ++k)
       if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(force, rate);
-    return true;
   }
 };
 
@@ -80,9 +120,8 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
     if (exists) now = Reading(w);
     return exists;
   };
-  bool done = false;
-  for (const double fraction : {1e-3, 1e-6, 1e-9})
-    for (const Stencil& stencil : stencils) done = done || pass.take(stencil, x, fraction * scale, now, move_to);
+  const bool done = pass.refine(x, scale, now, move_to);
+  pass.complete();
   return move_to(set) && done;
 }
 
@@ -122,7 +161,9 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
     if (turns) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
     return true;
   };
-  return pass.take(stencils[0], place, 1e-3 * h, now, move_to);
+  turns ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
+  pass.complete();
+  return true;
 }
 
 // 1/s, how fast the wheel moves, of states of the reduced forms.
@@ -166,7 +207,8 @@ void take_along_motion(Wheel& w, Pass& pass) {
     return true;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to, tau_rate);
+  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to);
+  pass.complete(tau_rate);
 }
 
 }  // namespace

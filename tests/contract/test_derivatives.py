@@ -387,3 +387,74 @@ def test_derivatives_are_quotients_of_the_outputs_at_the_instant_of_every_transi
     for t in sorted(found)[:8]:
         for near in (t - 2e-9, t, t + 2e-9):
             within(furthest(wheel().start(**CHANGES[scene]).to(near)), 1e-5, "derivatives off the quotients, relative")
+
+
+# ---- small spins and slips: within little their forces turn over ----
+
+
+@pytest.mark.parametrize("omega_s", [1.0, 1e-3, 1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("x", [-0.3, 2.0, 30.0])
+def test_the_moment_of_a_regularized_law_has_its_derivative_by_the_spin_at_every_width(wheel, omega_s, x):
+    """Upright: tau = -s m g tanh(phi_dot / omega_s)."""
+    law = {"friction_law": 2, "s": 0.003, "omega_s": omega_s, "theta_start": np.pi / 2, "psi_dot_start": 0.0}
+    w = wheel().initializing(phi_dot_start=x * omega_s, **law)
+    expected = -0.003 * 20 * 9.81 / omega_s / np.cosh(x) ** 2
+    found, velocity = w.jacobian(["tau", "Y_O_dot"], ["phi_dot_start"])[:, 0]
+    within(abs(found - expected) / max(abs(expected), 1.0), 1e-9, "derivative of tau, relative")
+    within(abs(velocity / w.put(phi_dot_start=1.0).get("Y_O_dot")[0] - 1), 1e-9, "derivative of the velocity, relative")
+
+
+@pytest.mark.parametrize("slip", [1.0, 1e-3, 3e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("direction", [0.0, 0.9, 2.5])
+def test_the_force_of_a_slip_has_its_derivatives_at_every_speed(wheel, slip, direction):
+    """Upright on a hub carrier N = m g: the force is -mu N along the slip."""
+    x, y, force = np.cos(direction), np.sin(direction), 0.5 * 20 * 9.81
+    start = {"guided": True, "theta_start": np.pi / 2, "mu_max": 0.5, "mu_slide": 0.5}
+    w = wheel().initializing(slip_x_start=slip * x, slip_y_start=slip * y, **start)
+    expected = -force / slip * np.array([[y * y, -x * y], [-x * y, x * x]])
+    found = w.jacobian(["lambda_x", "lambda_y"], ["slip_x_start", "slip_y_start"])
+    within(np.abs(found - expected).max() * slip / force, 1e-9, "derivatives of the force, relative")
+
+
+def small_spin_or_slip(random):
+    """A wheel with its scales of the slip and of the spin."""
+    slip, x, omega_s, mu = *10 ** random.uniform(-8, 0, 2), 10 ** random.uniform(-7, 0), random.uniform(0.2, 0.5)
+    theta, psi_dot, direction = random.uniform(0.8, 2.3), random.normal(), random.uniform(-np.pi, np.pi)
+    start = {"theta_start": theta, "psi_dot_start": psi_dot, "theta_dot_start": random.normal(), "J_x": 0.8, "J_z": 1.6}
+    start |= {"phi_dot_start": (x - 0.5) * omega_s - psi_dot * np.cos(theta), "friction_law": 2, "omega_s": omega_s}
+    start |= {"s": 0.02, "keep_contact": True}
+    if random.random() < 0.5:
+        start |= {"mu_max": mu, "mu_slide": mu, "slip_x_start": slip * np.cos(direction)}
+        start |= {"slip_y_start": slip * np.sin(direction)}
+    return start, slip, omega_s
+
+
+KNOWNS = ("phi_dot_start", "psi_dot_start", "theta_start", "theta_dot_start", "omega_s", "slip_x_start", "slip_y_start")
+
+
+def test_derivatives_by_the_start_are_quotients_over_steps_that_fit_the_spin_and_the_slip(wheel):
+    """Of the fourth order; their own rounding, and that of the spin, which is a small difference, are allowed for."""
+    random, coarse = np.random.default_rng(3), 0.0
+    for _ in range(60):
+        start, slip, omega_s = small_spin_or_slip(random)
+        w = wheel().initializing(**start)
+        for known in KNOWNS[: 7 if "mu_max" in start else 5]:
+            exact = w.jacobian(ANSWERS, [known])[:, 0]
+            (x,) = w.get(known)
+            fitting = slip if known.startswith("slip") else omega_s
+            for h, allowed in ((3e-3 * fitting, 1e-6), (1e-2, np.inf)):
+                f = [np.array(w.put(**{known: x + k * h}).get(*ANSWERS)) for k in (-2, -1, 1, 2)]
+                w.put(**{known: x})
+                quotient = (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
+                rounding = 1e4 * EPSILON * (1 + np.abs(f[1]) + np.abs(exact)) / h
+                off = np.abs(exact - quotient) / (np.abs(exact) + rounding / 1e-6)
+                within(dict(zip(ANSWERS, off, strict=True)), allowed, f"off the quotient by {known}, relative")
+            coarse = max(coarse, off.max())
+    beyond(coarse, 0.1, "derivatives off coarse quotients, relative")
+
+
+@pytest.mark.parametrize("mu", [0.5, 1e-2, 1e-4])
+def test_loads_that_decide_how_a_slip_begins_do_so_on_a_slippery_road(wheel, mu):
+    w = wheel().initializing(mu_max=mu, mu_slide=0.9 * mu, **UPRIGHT).put(F_Y=3e3 * mu, M_3=5 * mu)
+    assert w.get("contact_mode") == [1]
+    within(furthest(w, mu), 1e-6, "derivatives off the quotients, relative")
