@@ -16,7 +16,7 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 
 // Why an engine fails most often.
 inline constexpr const char* step_too_small =
-    "the step size became too small: extreme loads, or a communication step too long for a stiff link";
+    "the step size became too small: extreme forces, or a communication step too long for a stiff link";
 
 // Two times closer than this are the same instant, s.
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }

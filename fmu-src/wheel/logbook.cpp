@@ -87,7 +87,7 @@ void log_ending(Wheel& wheel, Event event) {
   if (event == Event::lies_flat && setup.tilting == 0 &&
       std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
     wheel.reporter.log(Topic::warning,
-                       "The wheel started exactly upright: unless a load tipped it, rounding decided when and to which "
+                       "The wheel started exactly upright: unless a force tipped it, rounding decided when and to which "
                        "side; guided = true keeps it upright.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
                      ending_of(run.in_force, event).text, wheel.time(),
