@@ -10,9 +10,6 @@
 
 typedef double Two __attribute__((vector_size(2 * sizeof(double)))); /* side by side in the processor */
 
-/* The state; the last two while the wheel slides. */
-enum { THETA, OMEGA_1, OMEGA_2, OMEGA_3, PSI, PHI, X_O, Y_O, SPEED, CHI };
-
 /* Geometry and velocity of O at one state; components along e1, e2, e3. */
 typedef struct Carrier {
   double sin_theta, cos_theta, sin_psi, cos_psi;
@@ -52,11 +49,11 @@ Sines wheel_sines(double angle);
 #define INLINED __attribute__((always_inline)) static inline
 
 INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
-  Sines theta = wheel_sines(y[THETA]), psi = wheel_sines(y[PSI]);
+  Sines theta = wheel_sines(y[WHEEL_THETA]), psi = wheel_sines(y[WHEEL_PSI]);
   Carrier c = {.sin_theta = theta.sine, .cos_theta = theta.cosine, .sin_psi = psi.sine, .cos_psi = psi.cosine};
-  c.omega_1 = y[OMEGA_1];
-  c.omega_2 = y[OMEGA_2];
-  c.omega_3 = y[OMEGA_3];
+  c.omega_1 = y[WHEEL_OMEGA_1];
+  c.omega_2 = y[WHEEL_OMEGA_2];
+  c.omega_3 = y[WHEEL_OMEGA_3];
   c.rho = w->r_0 + w->r * c.sin_theta;
   c.eta = w->r * c.cos_theta;
   c.psi_dot = c.omega_2 / c.sin_theta;
@@ -120,9 +117,9 @@ static inline void put_pair(double first, double second, double* out) {
 
 /* All of y_dot but the velocity of O and the slip. */
 static inline void set_rates(const Carrier* c, const Accelerations* a, double* y_dot) {
-  put_pair(c->omega_1, a->omega_1_dot, y_dot + THETA);
-  put_pair(a->omega_2_dot, a->omega_3_dot, y_dot + OMEGA_2);
-  put_pair(c->psi_dot, c->phi_dot, y_dot + PSI);
+  put_pair(c->omega_1, a->omega_1_dot, y_dot + WHEEL_THETA);
+  put_pair(a->omega_2_dot, a->omega_3_dot, y_dot + WHEEL_OMEGA_2);
+  put_pair(c->psi_dot, c->phi_dot, y_dot + WHEEL_PSI);
 }
 
 /* All of `out` but the horizontal reaction, which is set; m a = lambda + F + weight. */

@@ -7,12 +7,16 @@
 #include "wheel_equations.h"
 
 enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
-enum { R_OMEGA_1 = 1, R_OMEGA_2, R_OMEGA_3, R_X_O = 6, R_Y_O }; /* in the reduced form */
 
 static void reduce(const double* y, double* reduced) {
-  double omega_2 = y[PSI_DOT] * sin(y[THETA]);
-  const double same[] = {y[THETA], y[THETA_DOT], omega_2, y[SPIN], y[PSI], y[PHI], y[X_O], y[Y_O]};
-  memcpy(reduced, same, sizeof same);
+  reduced[WHEEL_THETA] = y[THETA];
+  reduced[WHEEL_OMEGA_1] = y[THETA_DOT];
+  reduced[WHEEL_OMEGA_2] = y[PSI_DOT] * sin(y[THETA]);
+  reduced[WHEEL_OMEGA_3] = y[SPIN];
+  reduced[WHEEL_PSI] = y[PSI];
+  reduced[WHEEL_PHI] = y[PHI];
+  reduced[WHEEL_X_O] = y[X_O];
+  reduced[WHEEL_Y_O] = y[Y_O];
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -28,14 +32,14 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
   reduce(y, reduced);
   double N = wheel_reduced.derivative(scene, reduced, rates);
-  y_dot[X_O] = rates[R_X_O];
-  y_dot[Y_O] = rates[R_Y_O];
+  y_dot[X_O] = rates[WHEEL_X_O];
+  y_dot[Y_O] = rates[WHEEL_Y_O];
   y_dot[PSI] = y[PSI_DOT];
   y_dot[THETA] = y[THETA_DOT];
   y_dot[PHI] = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
-  y_dot[THETA_DOT] = rates[R_OMEGA_1];
-  y_dot[PSI_DOT] = (rates[R_OMEGA_2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
-  y_dot[SPIN] = rates[R_OMEGA_3];
+  y_dot[THETA_DOT] = rates[WHEEL_OMEGA_1];
+  y_dot[PSI_DOT] = (rates[WHEEL_OMEGA_2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
+  y_dot[SPIN] = rates[WHEEL_OMEGA_3];
   return N;
 }
 

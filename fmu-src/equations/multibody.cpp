@@ -265,9 +265,17 @@ void stop_spin(const WheelParameters* wheel, double* y) {
 
 template <bool slides>
 void reduce(const double* y, double* reduced) {
-  Eigen::Map<Eigen::Vector<double, WHEEL_REDUCED_STATES>>(reduced) << y[theta], y[theta_dot],
-      y[psi_dot] * std::sin(y[theta]), y[spin], y[psi], y[phi], y[X_O], y[Y_O];
-  if (slides) Eigen::Map<Vector2>(reduced + WHEEL_REDUCED_STATES) << y[speed], y[chi];
+  reduced[WHEEL_THETA] = y[theta];
+  reduced[WHEEL_OMEGA_1] = y[theta_dot];
+  reduced[WHEEL_OMEGA_2] = y[psi_dot] * std::sin(y[theta]);
+  reduced[WHEEL_OMEGA_3] = y[spin];
+  reduced[WHEEL_PSI] = y[psi];
+  reduced[WHEEL_PHI] = y[phi];
+  reduced[WHEEL_X_O] = y[X_O];
+  reduced[WHEEL_Y_O] = y[Y_O];
+  if (!slides) return;
+  reduced[WHEEL_SLIP] = y[speed];
+  reduced[WHEEL_CHI] = y[chi];
 }
 
 template <bool slides>

@@ -127,7 +127,7 @@ typedef struct Instant {
 
 INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
-  Inertia inertia = inertia_of(w, y[PHI]);
+  Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
   Instant now = {.carrier = carrier_of(w, y)};
   now.drift = drift_of(scene, &inertia, &now.carrier);
   now.system =
@@ -162,24 +162,24 @@ static inline void set_velocity(const WheelParameters* w, const Carrier* c, doub
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   (void)wheel;
-  y[THETA] = motion->theta;
-  y[OMEGA_1] = motion->theta_dot;
-  y[OMEGA_2] = motion->psi_dot * sin(motion->theta);
-  y[OMEGA_3] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
-  y[PSI] = motion->psi;
-  y[PHI] = motion->phi;
-  y[X_O] = motion->X_O;
-  y[Y_O] = motion->Y_O;
+  y[WHEEL_THETA] = motion->theta;
+  y[WHEEL_OMEGA_1] = motion->theta_dot;
+  y[WHEEL_OMEGA_2] = motion->psi_dot * sin(motion->theta);
+  y[WHEEL_OMEGA_3] = motion->phi_dot + motion->psi_dot * cos(motion->theta);
+  y[WHEEL_PSI] = motion->psi;
+  y[WHEEL_PHI] = motion->phi;
+  y[WHEEL_X_O] = motion->X_O;
+  y[WHEEL_Y_O] = motion->Y_O;
 }
 
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
-  AxleLaw law = law_of(scene, y[OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
+  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
   Accelerations a = move(&now.system, law);
   double X_dot, Y_dot;
   set_velocity(&scene->wheel, &now.carrier, &X_dot, &Y_dot);
   set_rates(&now.carrier, &a, y_dot);
-  put_pair(X_dot, Y_dot, y_dot + X_O);
+  put_pair(X_dot, Y_dot, y_dot + WHEEL_X_O);
   return a.N;
 }
 
@@ -194,11 +194,11 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
-  out->theta = y[THETA];
-  out->psi = y[PSI];
-  out->phi = y[PHI];
-  out->X_O = y[X_O];
-  out->Y_O = y[Y_O];
+  out->theta = y[WHEEL_THETA];
+  out->psi = y[WHEEL_PSI];
+  out->phi = y[WHEEL_PHI];
+  out->X_O = y[WHEEL_X_O];
+  out->Y_O = y[WHEEL_Y_O];
   out->Z_O = wheel->r_0 * c.sin_theta + wheel->r;
   out->theta_dot = c.omega_1;
   out->psi_dot = c.psi_dot;
@@ -210,14 +210,14 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Instant now = instant_of(scene, y, scene->guided);
-  Accelerations a = move(&now.system, law_of(scene, y[OMEGA_3]));
+  Accelerations a = move(&now.system, law_of(scene, y[WHEEL_OMEGA_3]));
   reaction_of(&scene->wheel, &now, &a, out->lambda);
   set_dynamics(scene, &now.carrier, &a, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {
   (void)wheel;
-  y[OMEGA_3] = 0;
+  y[WHEEL_OMEGA_3] = 0;
 }
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
@@ -226,8 +226,8 @@ const WheelFormulation wheel_reduced = {
     .states = WHEEL_REDUCED_STATES,
     .start = start,
     .derivative = derivative,
-    .spin_index = OMEGA_3,
-    .tilt_index = THETA,
+    .spin_index = WHEEL_OMEGA_3,
+    .tilt_index = WHEEL_THETA,
     .slip_index = -1,
     .kinematics = kinematics,
     .dynamics = dynamics,

@@ -56,7 +56,7 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
 INLINED Body body_of(const WheelScene* scene, const double* y) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
-  Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[PHI])};
+  Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[WHEEL_PHI])};
   const Carrier* c = &b.carrier;
   Action* a = &b.given;
   double yield = scene->guided ? 0 : 1; /* on a hub carrier no moment turns the wheel across its axle */
@@ -156,8 +156,8 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
   memset(y, 0, sizeof(double) * WHEEL_SLIDING_STATES);
   wheel_reduced.start(wheel, motion, y);
-  y[SPEED] = sqrt(motion->slip_x * motion->slip_x + motion->slip_y * motion->slip_y);
-  y[CHI] = wheel_angle_of(motion->slip_x, motion->slip_y);
+  y[WHEEL_SLIP] = sqrt(motion->slip_x * motion->slip_x + motion->slip_y * motion->slip_y);
+  y[WHEEL_CHI] = wheel_angle_of(motion->slip_x, motion->slip_y);
 }
 
 /* The velocity of O: that of rolling, and the slip u. */
@@ -167,29 +167,29 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 
 /* Returns N, infinite where the wheel jams. */
 static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Sines chi = wheel_sines(y[CHI]); /* first: behind the call nothing is left in registers */
+  Sines chi = wheel_sines(y[WHEEL_CHI]); /* first: behind the call nothing is left in registers */
   Body b = body_of(scene, y);
   const Carrier* c = &b.carrier;
   double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
-  double chi_dot = y[SPEED] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[SPEED] - c->psi_dot;
-  set_velocity(c, b.h, y[SPEED] * d_x, y[SPEED] * d_y, &X_dot, &Y_dot);
+  double chi_dot = y[WHEEL_SLIP] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[WHEEL_SLIP] - c->psi_dot;
+  set_velocity(c, b.h, y[WHEEL_SLIP] * d_x, y[WHEEL_SLIP] * d_y, &X_dot, &Y_dot);
   set_rates(c, &m.a, y_dot);
-  put_pair(X_dot, Y_dot, y_dot + X_O);
-  put_pair(m.u_x * d_x + m.u_y * d_y, chi_dot, y_dot + SPEED);
+  put_pair(X_dot, Y_dot, y_dot + WHEEL_X_O);
+  put_pair(m.u_x * d_x + m.u_y * d_y, chi_dot, y_dot + WHEEL_SLIP);
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   wheel_reduced.kinematics(wheel, y, out);
-  Sines chi = wheel_sines(y[CHI]);
-  set_velocity(&c, out->Z_O, y[SPEED] * chi.cosine, y[SPEED] * chi.sine, &out->X_O_dot, &out->Y_O_dot);
+  Sines chi = wheel_sines(y[WHEEL_CHI]);
+  set_velocity(&c, out->Z_O, y[WHEEL_SLIP] * chi.cosine, y[WHEEL_SLIP] * chi.sine, &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Body b = body_of(scene, y);
-  Sines chi = wheel_sines(y[CHI]);
+  Sines chi = wheel_sines(y[WHEEL_CHI]);
   double d_x = chi.cosine, d_y = chi.sine;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
   to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
@@ -203,16 +203,16 @@ static void stop_spin(const WheelParameters* wheel, double* y) { wheel_reduced.s
 
 static void grip(const WheelParameters* wheel, double* y) {
   (void)wheel;
-  y[SPEED] = y[CHI] = 0;
+  y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
 }
 
 const WheelFormulation wheel_sliding = {
     .states = WHEEL_SLIDING_STATES,
     .start = start,
     .derivative = derivative,
-    .spin_index = OMEGA_3,
-    .tilt_index = THETA,
-    .slip_index = SPEED,
+    .spin_index = WHEEL_OMEGA_3,
+    .tilt_index = WHEEL_THETA,
+    .slip_index = WHEEL_SLIP,
     .kinematics = kinematics,
     .dynamics = dynamics,
     .reduce = reduce,

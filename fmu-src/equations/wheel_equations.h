@@ -21,6 +21,11 @@ extern "C" {
 
 enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
 
+/* Places in the state of `wheel_reduced`, angular velocity along the carrier axes; and in that of `wheel_sliding`
+ * behind them the slip |u| and its direction chi. */
+enum { WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3, WHEEL_PSI, WHEEL_PHI, WHEEL_X_O, WHEEL_Y_O };
+enum { WHEEL_SLIP = WHEEL_REDUCED_STATES, WHEEL_CHI };
+
 /* Constants of one wheel, (1), (2), (27)-(31). */
 typedef struct WheelParameters {
   double m;             /* kg, > 0 */
@@ -157,8 +162,8 @@ typedef struct WheelFormulation {
   void (*grip)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
 
-/* y = theta, omega_1, omega_2, omega_3 (carrier), psi, phi, X_O, Y_O. Where J_x = J_y, phi enters nothing, and a
- * simpler elimination is taken. X_O and Y_O never enter, psi does only where F_X or F_Y is not zero. */
+/* y by WHEEL_THETA and on. Where J_x = J_y, phi enters nothing, and a simpler elimination is taken. X_O and Y_O never
+ * enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
 
 /* y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z: the reduced equations in the paper's own variables, the
@@ -170,7 +175,7 @@ extern const WheelFormulation wheel_euler;
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
 
-/* y = that of `wheel_reduced`, |u| and chi: Newton and Euler, with the ground's horizontal force
+/* y = that of `wheel_reduced`, |u| and chi, by WHEEL_THETA and on: Newton and Euler, with the ground's horizontal force
  * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. */
 extern const WheelFormulation wheel_sliding;
 

@@ -44,7 +44,8 @@ bool Orbit::maps(const solver::Problem& problem, double t, const double* y, doub
 
 Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                            solver::Solver& solver) {
-  double own[states] = {y0[theta], y0[omega_1], y0[omega_2], y0[omega_3]};  // psi, phi, X_O and Y_O are zero
+  double own[states] = {};  // psi, phi, X_O and Y_O are zero
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) own[i] = y0[i];
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   problem.longest_step *= shortening;
   *this = Orbit();
@@ -57,7 +58,7 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
 
 // Steps past T1 and T2. A start with omega_1 = 0 is T1.
 Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
-  double y[states], weights[states], swing = 0, before = y0[omega_1];
+  double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
   bool turned = before == 0;
   if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
@@ -65,9 +66,9 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
     const solver::Outcome outcome = step(problem, pass, solver);
     if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
     solver.read(solver.known_until(), y);
-    if (y[omega_1] != 0 && before != 0 && std::signbit(y[omega_1]) != std::signbit(before)) {
+    if (y[WHEEL_OMEGA_1] != 0 && before != 0 && std::signbit(y[WHEEL_OMEGA_1]) != std::signbit(before)) {
       T2_ = turning_point(problem, before, solver);
-      if (turned && swing * weights[omega_1] < least_swing) return Result::refused;
+      if (turned && swing * weights[WHEEL_OMEGA_1] < least_swing) return Result::refused;
       if (turned) return unfold(problem, Result::unfolded) ? Result::unfolded : Result::refused;
       T1_ = T2_;
       turned = true;
@@ -78,8 +79,8 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
       event_ = solver.event();
       return Result::ended;
     }
-    if (y[omega_1] != 0) before = y[omega_1];
-    swing = std::fmax(swing, std::fabs(y[omega_1]));
+    if (y[WHEEL_OMEGA_1] != 0) before = y[WHEEL_OMEGA_1];
+    swing = std::fmax(swing, std::fabs(y[WHEEL_OMEGA_1]));
   }
 }
 
@@ -102,8 +103,8 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
 
 // Where omega_1 falls through zero in the last step, seen from the side of `before`, on which the step begins.
 double Orbit::turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
-  const auto value = [](void*, int side, double, const double* y) { return side * y[omega_1]; };
-  const solver::Watched watched = {before > 0 ? 1 : -1, value, false, omega_1};
+  const auto value = [](void*, int side, double, const double* y) { return side * y[WHEEL_OMEGA_1]; };
+  const solver::Watched watched = {before > 0 ? 1 : -1, value, false, WHEEL_OMEGA_1};
   const double end = solver.known_until();
   long long uncounted = 0;
   const solver::Search search = {problem, solver.last_step(), watched, {}, &uncounted};
@@ -126,7 +127,7 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   read_own(T2_ - since, y);
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
-  for (const State i : {theta, omega_2, omega_3}) rate[i] = -rate[i];
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
   set_place(rate, -half_of(T2_ + since).turn * std::conj(place_of(rate)));
   return maps(problem, T2_ - since, y, T2_ + since, image, rate);
 }
@@ -136,41 +137,43 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
 // With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
 // state repeats for ever.
 bool Orbit::rests(const solver::Problem& problem, const double* y0) {
-  const double h = 1e-4 * std::sin(y0[theta]), slowest = 0.5 / problem.longest_step;
+  const double h = 1e-4 * std::sin(y0[WHEEL_THETA]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
   problem.derivative(problem.owner, 0, y0, rate);
   problem.weights(problem.owner, problem.share, y0, weights);
-  if (!(std::fabs(y0[omega_1]) * weights[omega_1] < 1)) return false;
+  if (!(std::fabs(y0[WHEEL_OMEGA_1]) * weights[WHEEL_OMEGA_1] < 1)) return false;
   for (int i = 0; i < problem.watched_count; ++i)
     if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return false;
   std::copy_n(y0, states, y);
-  y[omega_1] = 1;
+  y[WHEEL_OMEGA_1] = 1;
   problem.derivative(problem.owner, 0, y, along);
-  y[omega_1] = 0;
+  y[WHEEL_OMEGA_1] = 0;
   const auto lean = [&](double by, double* out) {
-    y[theta] = y0[theta] + by;
-    y[omega_2] = y0[omega_2] + by * along[omega_2];
-    y[omega_3] = y0[omega_3] + by * along[omega_3];
+    y[WHEEL_THETA] = y0[WHEEL_THETA] + by;
+    y[WHEEL_OMEGA_2] = y0[WHEEL_OMEGA_2] + by * along[WHEEL_OMEGA_2];
+    y[WHEEL_OMEGA_3] = y0[WHEEL_OMEGA_3] + by * along[WHEEL_OMEGA_3];
     problem.derivative(problem.owner, 0, y, out);
   };
   lean(h, ahead);
   lean(-h, behind);
-  const bool indifferent = y0[omega_1] == 0 && rate[omega_1] == 0 && ahead[omega_1] == 0 && behind[omega_1] == 0;
+  const bool indifferent =
+      y0[WHEEL_OMEGA_1] == 0 && rate[WHEEL_OMEGA_1] == 0 && ahead[WHEEL_OMEGA_1] == 0 && behind[WHEEL_OMEGA_1] == 0;
   if (indifferent) return keep_rest(problem, y0, rate, problem.longest_step);
-  const double stiffness = (behind[omega_1] - ahead[omega_1]) / (2 * h);
+  const double stiffness = (behind[WHEEL_OMEGA_1] - ahead[WHEEL_OMEGA_1]) / (2 * h);
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
-  const double swing = std::fabs(rate[omega_1]) / stiffness + std::fabs(y0[omega_1]) / std::sqrt(stiffness);
-  const double most_weight = std::fmax(weights[theta], std::fmax(std::fabs(along[omega_2]) * weights[omega_2],
-                                                                 std::fabs(along[omega_3]) * weights[omega_3]));
+  const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / stiffness + std::fabs(y0[WHEEL_OMEGA_1]) / std::sqrt(stiffness);
+  const double most_weight =
+      std::fmax(weights[WHEEL_THETA], std::fmax(std::fabs(along[WHEEL_OMEGA_2]) * weights[WHEEL_OMEGA_2],
+                                                std::fabs(along[WHEEL_OMEGA_3]) * weights[WHEEL_OMEGA_3]));
   if (!(swing * most_weight < largest_rest)) return false;
-  return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[psi])));
+  return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[WHEEL_PSI])));
 }
 
 // Keeps the circle (or straight line) of a steady motion, of which any piece is a half: that of this length, s.
 bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   T2_ = length;
   std::copy_n(y0, states, first_);
-  first_[omega_1] = 0;
+  first_[WHEEL_OMEGA_1] = 0;
   std::copy_n(rate, states, steady_rate_);
   return unfold(problem, Result::steady);
 }

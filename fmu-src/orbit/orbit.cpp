@@ -9,10 +9,10 @@ namespace orbit {
 
 bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
   half_ = {};
-  lead_.psi_sum = y0[psi];
-  lead_.phi_sum = y0[phi];
+  lead_.psi_sum = y0[WHEEL_PSI];
+  lead_.phi_sum = y0[WHEEL_PHI];
   lead_.place = place_of(y0);
-  lead_.turn = std::polar(1.0, y0[psi]);
+  lead_.turn = std::polar(1.0, y0[WHEEL_PSI]);
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
   const double t = 0.6 * T2_;
   double own[states], rate[states], y[states];
@@ -28,11 +28,11 @@ void Orbit::take_half() {
   half_ = {};
   read_own(T1_, first_);
   read_own(T2_, second_);
-  delta_ = std::remainder(second_[psi] - first_[psi], std::numbers::pi);
-  displacement_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[psi]);
+  delta_ = std::remainder(second_[WHEEL_PSI] - first_[WHEEL_PSI], std::numbers::pi);
+  displacement_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[WHEEL_PSI]);
   pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
-  first_turn_ = std::polar(1.0, first_[psi]);
-  mirror_turn_ = std::polar(1.0, 2 * second_[psi]);
+  first_turn_ = std::polar(1.0, first_[WHEEL_PSI]);
+  mirror_turn_ = std::polar(1.0, 2 * second_[WHEEL_PSI]);
 }
 
 // The k halves before it are the integrated one and its mirror image in turn. A pair of them turns the path by 2 delta;
@@ -42,7 +42,8 @@ Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.begin = begin_of(k);
   half.next = begin_of(k + 1);
-  const double n = std::floor(0.5 * k), turn = second_[psi] - first_[psi], roll = second_[phi] - first_[phi];
+  const double n = std::floor(0.5 * k), turn = second_[WHEEL_PSI] - first_[WHEEL_PSI],
+               roll = second_[WHEEL_PHI] - first_[WHEEL_PHI];
   half.mirrored = k != 2 * n;
   const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
   const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
@@ -50,8 +51,8 @@ Orbit::Half Orbit::half_at(double k) const {
   if (half.mirrored) way += displacement_ * pairs_turn;
   half.place = lead_.place + lead_.turn * (place_of(first_) + way * first_turn_);
   half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
-  half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[psi] + (k - 1) * turn : k * turn);
-  half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[phi] + (k - 1) * roll : k * roll);
+  half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[WHEEL_PSI] + (k - 1) * turn : k * turn);
+  half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[WHEEL_PHI] + (k - 1) * roll : k * roll);
   return half;
 }
 
@@ -64,23 +65,25 @@ const Orbit::Half& Orbit::half_of(double t) const {
 }
 
 double Orbit::fastest_turn() const {
-  const double turn = std::fabs(second_[psi] - first_[psi]), roll = std::fabs(second_[phi] - first_[phi]);
+  const double turn = std::fabs(second_[WHEEL_PSI] - first_[WHEEL_PSI]),
+               roll = std::fabs(second_[WHEEL_PHI] - first_[WHEEL_PHI]);
   return std::fmax(turn, roll) / (T2_ - T1_);
 }
 
 // y from the frame of the integrated half to the fixed axes; way: from the start of the half to O.
 void Orbit::turn_by(const Half& half, Complex way, double* y) {
-  y[psi] += half.psi_sum;
-  y[phi] += half.phi_sum;
+  y[WHEEL_PSI] += half.psi_sum;
+  y[WHEEL_PHI] += half.phi_sum;
   set_place(y, half.place + half.turn * way);
 }
 
 // psi, phi and the displacement of O are proportional to the time, along a chord that turns half as fast as the wheel.
 void Orbit::read_circle(double t, double* y) const {
-  const double half = 0.5 * steady_rate_[psi] * t, shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
-  for (const State i : {theta, omega_1, omega_2, omega_3}) y[i] = first_[i];
-  y[psi] = steady_rate_[psi] * t;
-  y[phi] = steady_rate_[phi] * t;
+  const double half = 0.5 * steady_rate_[WHEEL_PSI] * t,
+               shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y[i] = first_[i];
+  y[WHEEL_PSI] = steady_rate_[WHEEL_PSI] * t;
+  y[WHEEL_PHI] = steady_rate_[WHEEL_PHI] * t;
   set_place(y, place_of(steady_rate_) * (t * shortened) * std::polar(1.0, half));
 }
 
@@ -98,9 +101,9 @@ void Orbit::read(double t, double* y) const {
   Complex way = place_of(y) - place_of(half.mirrored ? second_ : first_);
   if (half.mirrored) {
     way = std::conj(way);
-    y[omega_1] = -y[omega_1];
-    y[psi] = -y[psi];
-    y[phi] = -y[phi];
+    y[WHEEL_OMEGA_1] = -y[WHEEL_OMEGA_1];
+    y[WHEEL_PSI] = -y[WHEEL_PSI];
+    y[WHEEL_PHI] = -y[WHEEL_PHI];
   }
   turn_by(half, way, y);
 }

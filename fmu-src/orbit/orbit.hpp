@@ -1,5 +1,5 @@
-// The free wheel unfolded: without friction, brake and load, and with J_x = J_y, half a nutation holds the whole
-// motion.
+// The free wheel unfolded: without friction, brake and load, and with J_x = J_y or on a hub carrier, half a nutation
+// holds the whole motion.
 //
 // Along the motion omega_2 and omega_3 are functions of theta alone (Chaplygin), so theta swings to and fro between two
 // turning points (omega_1 = theta_dot = 0). The equations are the same with time reversed: about a turning point T,
@@ -17,14 +17,14 @@
 //       |  .           .  .            .        T2 to T3:   its mirror image about T2, turned and displaced
 //       +--0-----------T2----------------- t    from T3 on: images of images, L each
 //
-// State of the reduced form (wheel_equations.h): theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O. Time in s, zero
-// at the start.
+// State of the reduced form (wheel_equations.h). Time in s, zero at the start.
 #pragma once
 
 #include <complex>
 
 #include "solver.hpp"
 #include "track.hpp"
+#include "wheel_equations.h"
 
 namespace orbit {
 
@@ -65,13 +65,12 @@ class Orbit {
   double first_time() const { return first_time_; }
 
  private:
-  enum State { theta, omega_1, omega_2, omega_3, psi, phi, X_O, Y_O };
   using Complex = std::complex<double>;
   static constexpr int states = Track::states;
-  static Complex place_of(const double* y) { return {y[X_O], y[Y_O]}; }
+  static Complex place_of(const double* y) { return {y[WHEEL_X_O], y[WHEEL_Y_O]}; }
   static void set_place(double* y, Complex place) {
-    y[X_O] = place.real();
-    y[Y_O] = place.imag();
+    y[WHEEL_X_O] = place.real();
+    y[WHEEL_Y_O] = place.imag();
   }
 
   // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1: where O begins, and how far the integrated path,

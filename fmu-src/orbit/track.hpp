@@ -1,18 +1,19 @@
 // A motion that was integrated once, kept to be read at any instant: the polynomials of its steps.
 //
-// State of the reduced form, 8 numbers; time in s.
+// State of the reduced form; time in s.
 #pragma once
 
 #include <cstdlib>
 #include <memory>
 
 #include "step.hpp"
+#include "wheel_equations.h"
 
 namespace orbit {
 
 class Track {
  public:
-  static constexpr int states = 8;
+  static constexpr int states = WHEEL_REDUCED_STATES;
 
   // The next step, with its polynomial; false where the track is full or there is no memory for it.
   bool add(const solver::Step& step);

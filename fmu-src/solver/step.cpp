@@ -1,4 +1,4 @@
-// Dense output, the same for both engines.
+// The dense output, the same for all engines.
 #include "step.hpp"
 
 #include <algorithm>

@@ -141,7 +141,7 @@ bool can_stiffen(const Setup& setup, const InForce& now) {
 }
 
 // The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
-// with the wheel's own time scale; below the limit DOP853 alone is faster (docs/results/stability.md).
+// with the wheel's own time scale; below the limit DOP853 alone is faster.
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
   constexpr double stiff = 500;
   const WheelParameters& wheel = scene.wheel;

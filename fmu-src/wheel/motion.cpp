@@ -2,9 +2,10 @@
 // stages. Times in s on the own clock.
 //
 //   stage           writes, besides the solution
-//   apply_demand    run: in_force, phase (an orbit is left), last_change, transitions; demand.changed
+//   apply_demand    run: in_force, y (a slip), phase (an orbit is left), last_change, transitions, counted;
+//                   demand.changed
 //   set_in_motion   run: phase, counted
-//   proceed         run: t, y, in_force, observed, transitions, at events that do not end the run
+//   proceed         run: grip_due; t, y, in_force, observed, transitions, at events that do not end the run
 //   arrive          run: t, observed; demand: inputs and changed, where an input varies
 //   end             run: t, y, phase, ended_by, counted
 //   fail            run: as before the step, but for the phase; demand.changed: as before

@@ -168,9 +168,11 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
 
 // 1/s, how fast the wheel moves, of states of the reduced forms.
 double pace_of(const double* y, const double* y_dot, bool slides) {
-  const double swing = std::fabs(y_dot[1]) + std::fabs(y_dot[2]) + std::fabs(y_dot[3]);
-  const double tilting = (std::fabs(y[1]) + std::fabs(y[2])) / std::sin(y[0]);
-  return tilting + std::fabs(y[3]) + std::sqrt(swing) + (slides ? std::fabs(y_dot[9]) : 0);
+  double swing = 0;
+  for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) swing += std::fabs(y_dot[rate]);
+  const double tilting = (std::fabs(y[WHEEL_OMEGA_1]) + std::fabs(y[WHEEL_OMEGA_2])) / std::sin(y[WHEEL_THETA]);
+  const double turning = slides ? std::fabs(y_dot[WHEEL_CHI]) : 0;
+  return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + turning;
 }
 
 // In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
@@ -183,7 +185,7 @@ void take_along_motion(Wheel& w, Pass& pass) {
   Reading start = whole;
   start.setup = &setup;
   formulation_of(w.setup, whole.scene).reduce(whole.y, start.y);
-  for (const int angle : {4, 5})  // a small step must not vanish in the rounding of a large angle
+  for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
     start.y[angle] = wheel_less_turns(start.y[angle]);
   keep_ground(start);
   const WheelFormulation& formulation = formulation_of(setup, start.scene);
