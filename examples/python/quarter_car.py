@@ -42,4 +42,4 @@ def distance(v, anti_lock):
 for anti_lock in (False, True):
     print(f"Anti-lock {'on' if anti_lock else 'off'}: {distance(20.0, anti_lock):.1f} m.")
 low, high = (20.0**2 / (2 * mu * g) for mu in (0.6, 0.4))
-print(f"Between v^2 / (2 mu g): {low:.1f} m and {high:.1f} m.")
+print(f"v^2 / (2 mu g): {low:.1f} m with mu_max, {high:.1f} m with mu_slide, for a brake that acts at once.")
