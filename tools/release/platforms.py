@@ -1,5 +1,6 @@
 """Runs a release on every platform that this machine can run: Windows under wine, arm under qemu, WebAssembly in
-wasmtime. macOS is only built. Scenes of the paper, SI units.
+wasmtime. macOS is only built: its drivers, and that for Windows, are left for machines of a forge. Scenes of the paper,
+SI units.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import wasmtime
 from tabulate import tabulate
 
 from release.compiling import ROOT, WASM, build
-from release.fmu import ARM, LINUX, WINDOWS
+from release.fmu import ARM, ARM_MAC, INTEL_MAC, LINUX, WINDOWS
 
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
 OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output" and v.type == "Real"]
@@ -61,10 +62,22 @@ def printed(out: Path) -> Iterator[tuple[str, str]]:
     yield "wasm32, wasmtime", run_wasm(out / WASM / "wheel_driver.wasm")
 
 
+def leave_drivers(out: Path, hashes: str) -> None:
+    """out/drivers, for .github/workflows/release.yml: a driver by the name of its platform, and what it must print."""
+    folder = out / "drivers"
+    folder.mkdir(exist_ok=True)
+    (folder / "hashes.txt").write_text(hashes, encoding="utf-8")
+    for name, platform in {"win64.exe": WINDOWS, "darwin64": INTEL_MAC, "aarch64-darwin": ARM_MAC}.items():
+        build(out / platform, platform, "wheel_driver")
+        shutil.copy((out / platform / "wheel_driver").with_suffix(Path(name).suffix), folder / name)
+
+
 def scenes(out: Path) -> dict[str, object]:
     """For the page: the platforms, each scene's digest on the first of them, and where another one has another."""
-    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in printed(out)}
-    first = next(iter(digests.values()))
+    texts = dict(printed(out))
+    leave_drivers(out, texts["linux64"])
+    digests = {place: dict(line.split("\t") for line in text.splitlines()) for place, text in texts.items()}
+    first = digests["linux64"]
     different = [f"{s} on {place}" for place, found in digests.items() for s in first if found[s] != first[s]]
     run = tabulate(first.items(), ["scene", "hash"], "pipe", disable_numparse=True)
     return {"run": run, "places": [*digests], "different": different}
