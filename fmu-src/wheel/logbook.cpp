@@ -87,8 +87,10 @@ void log_ending(Wheel& wheel, Event event) {
   if (event == Event::lies_flat && setup.tilting == 0 &&
       std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
     wheel.reporter.log(Topic::warning,
-                       "The wheel started exactly upright: unless a force tipped it, rounding decided when and to which "
-                       "side; guided = true keeps it upright.");
+                       "The wheel started exactly upright: unless a force tipped it, rounding decided when and to "
+                       "which side; guided = true keeps it upright.");
+  if (event == Event::lost_contact && run.in_force.scene_at(run.t).load.F[2] > 0)
+    wheel.reporter.log(Topic::warning, "F_Z > 0 lifts the wheel; a load on it is a negative F_Z.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
                      ending_of(run.in_force, event).text, wheel.time(),
                      Digits{run.y[setup.formulation->tilt_index], 6});

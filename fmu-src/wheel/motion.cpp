@@ -144,7 +144,9 @@ Outcome step_to(Wheel& w, double t) {
   const long long work_per_step = w.setup.formulation->states == WHEEL_MULTIBODY_STATES ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
-      w.failure = "one call may take no more internal steps; use shorter communication steps";
+      w.failure =
+          "one call may take no more internal steps; use shorter communication steps; a coupling may diverge, or a "
+          "force, a brake or a regularized law be extreme";
       return Outcome::failed;
     }
     const long long before = solver.counters().rhs;
@@ -196,8 +198,12 @@ void end(Wheel& w) {
 // The state is that before the step, and stays so.
 void fail(Wheel& w, const Run& before) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
-  w.reporter.log(Topic::error, "The solver stopped at t = %s s, where omega_z = %s rad/s: %s.", w.time(),
-                 Digits{state_now(w)[w.setup.formulation->spin_index], 4}, w.failure ? w.failure : w.solver.failure());
+  const double spin = state_now(w)[w.setup.formulation->spin_index];
+  const double slip = before.in_force.slides() ? before.y[w.setup.sliding->slip_index] : 0;
+  w.reporter.log(
+      Topic::error,
+      "The solver stopped at t = %s s, where omega_z = %s rad/s, in a step that began with a slip of %s m/s: %s.",
+      w.time(), Digits{spin, 4}, Digits{slip, 4}, w.failure ? w.failure : w.solver.failure());
   w.run = before;
   w.run.phase = Phase::broken;
 }

@@ -8,6 +8,7 @@ from support.scenes import THETA_0
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight
+HINT = "F_Z > 0 lifts the wheel; a load on it is a negative F_Z."
 
 
 def ended(w: FMU2Wheel) -> float:
@@ -34,7 +35,8 @@ def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_i
     assert w.step(10.0) == DISCARD
     end, bits = ended(w), w.bits()
     logged = f"{what} at t = {np.format_float_positional(end, trim='-')} s"  # the shortest decimal that is this number
-    (message,) = w.take_messages()
+    *hints, message = w.take_messages()
+    assert [hint.text for hint in hints] == ([HINT] if "F_Z" in values else [])
     assert (message.status, message.category) == (WARNING, "logStatusDiscard")
     assert message.text == f"The wheel {logged}, theta = {w.get('theta')[0]:.6g} rad: the run ends there."
     w.time = end
@@ -87,7 +89,8 @@ def test_a_wheel_pulled_up_lifts_off_where_the_normal_force_vanishes(wheel):
     assert w.step(10.0) == DISCARD
     t = ended(w)
     within(abs(w.get("lambda_3")[0]), 3e-6, "normal force, N")
-    assert "lifted off" in w.said()
+    hint, ending = w.texts()
+    assert hint == HINT and "lifted off" in ending
     beyond(before.by(t - 0.01).get("lambda_3")[0], 0.1, "normal force before, N")
     assert kept.by(t + 0.2).get("lambda_3")[0] < 0  # the partner: the ground pulls
 

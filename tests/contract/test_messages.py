@@ -167,8 +167,9 @@ def calls(library: Library) -> Iterator[Case]:
     yield "…: there is no status of kind ….", answer("GetRealStatus", 1, [0]), ["fmi2GetRealStatus", 1]
     spin = w.by(0.5).get("omega_z")[0]
     assert w.put(M_3=1e300).step(0.5) == ERROR
-    text, why = "The solver stopped at t = … s, where omega_z = … rad/s: ….", "the step size became too small"
-    yield text, w.said().partition(": extreme")[0] + ".", [7.75, float(f"{spin:.4g}"), why]
+    text = "The solver stopped at t = … s, where omega_z = … rad/s, in a step that began with a slip of … m/s: …."
+    parts = [7.75, float(f"{spin:.4g}"), 0, "the step size became too small"]
+    yield text, w.said().partition(": extreme")[0] + ".", parts
     w, slopes = library.wheel().initializing(J_x=0.75, J_y=0.75, J_z=1e-12), "GetDirectionalDerivative"
     text = "…: no valid initial values near … = … for a derivative."
     yield text, answer(slopes, theta, 1, w.refer("J_x"), 1, [1], [0]), [f"fmi2{slopes}", "J_x", 0.75]

@@ -188,3 +188,16 @@ def test_a_state_of_another_version_is_refused_with_a_message(wheel):
     for old in ([2, NAN, 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
         assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
         assert w.said() == f"{DAMAGED} no state of this FMU, its version and kind of instance."
+
+
+def test_a_state_that_slides_although_its_wheel_cannot_is_refused(wheel):
+    """It has no equations for a slip. The contact's word is the one that a start with slip sets to 1."""
+    road = {"mu_max": 0.5, "mu_slide": 0.4}
+    rolls, slides = (words_of(wheel().start(**road, **slip).serialized()) for slip in ({}, {"slip_x_start": 1.0}))
+    (contact,) = (place for place, pair in enumerate(zip(rolls, slides, strict=True)) if pair == (0, 1))
+    for w, taken in ((wheel().start(), False), (wheel().start().to(0.5), False), (wheel().start(**road), True)):
+        words = words_of(w.serialized())
+        assert words[contact] == 0
+        assert (w.restore(signed([*words[:contact], 1, *words[contact + 1 :]])) == OK) == taken
+        assert taken or w.said() == "fmi2SetFMUstate: a number is out of its bounds."
+        assert taken or w.by(0.01).get("contact_mode") == [0]

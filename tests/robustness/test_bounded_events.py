@@ -94,17 +94,27 @@ def test_random_scenes_with_many_transitions_end_soon(wheel, block):
 def test_a_step_under_an_enormous_load_ends_in_bounded_time_and_says_why(wheel, load):
     w = wheel().start(s=0.03, keep_contact=True)
     assert (w.set(**load), w.step_to(0.01)) == (OK, ERROR)
-    assert re.fullmatch(r"The solver stopped at t = \S+ s, where omega_z = \S+ rad/s: .+\.", w.sentences[-1])
+    said = r"The solver stopped at t = \S+ s, where omega_z = \S+ rad/s, in a step .+ slip of 0 m/s: .+\."
+    assert re.fullmatch(said, w.sentences[-1])
     assert w.get("n_steps")[0] < 1.001e6
 
 
 def test_one_call_takes_at_most_a_million_internal_steps_and_shorter_calls_go_on(wheel):
     w, careful = (wheel().start(phi_dot_start=1e4, s=1e-9) for _ in range(2))
     assert w.step_to(40.0) == ERROR
-    assert w.sentences[-1].endswith("may take no more internal steps; use shorter communication steps.")
+    assert "may take no more internal steps; use shorter communication steps; a coupling may" in w.sentences[-1]
     assert careful.step_to(5.0) == careful.step_to(10.0) == OK
     stopped = float(re.search(r"t = (\S+) s", w.sentences[-1])[1])
     within(abs(careful.get("n_steps")[0] * stopped / 10.0 / 1e6 - 1), 1e-5, "steps until then, off a million, relative")
+
+
+def test_a_coupling_that_diverges_is_named_with_its_slip(wheel):
+    """A damper whose force is that of the velocity one step before, far beyond its limit."""
+    w = wheel().start(guided=True, theta_start=pi / 2, mu_max=0.5, mu_slide=0.4)
+    while w.put(F_X=-3e4 * w.get("X_O_dot")[0] + 300).step(0.01) == OK:
+        assert w.time < 5
+    stopped = re.search(r"with a slip of (\S+) m/s: .*coupl", w.sentences[-1])
+    beyond(float(stopped[1]), 1e3, "slip, m/s")
 
 
 @pytest.mark.parametrize("when", [0.0, 0.5])
