@@ -18,7 +18,7 @@ folder = extract(path)
 wheel = instantiate_fmu(folder, description, "CoSimulation")
 wheel.setupExperiment(startTime=0.0)
 wheel.enterInitializationMode()
-wheel.setBoolean([number["guided"]], [True])  # a hub carrier keeps its axle's direction
+wheel.setBoolean([number["guided"]], [True])  # a wheel carrier keeps its axle's direction
 wheel.setReal([number["theta_start"], number["phi_dot_start"]], [pi / 2, -10.0])  # upright, forward at 3.5 m/s
 wheel.exitInitializationMode()
 

@@ -115,7 +115,7 @@ class Scene:
 
     @property
     def guided(self) -> bool:
-        """Whether a hub carrier keeps the direction of its axle."""
+        """Whether a wheel carrier keeps the direction of its axle."""
         return self.value("guided") > 0
 
     @property

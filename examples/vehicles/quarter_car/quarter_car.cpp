@@ -1,5 +1,5 @@
 /* Quarter car: a sprung mass B above the wheel's centre O, linked to it by springs and dampers without mass. B does not
- * turn; the wheel's own hub carrier (`guided`) keeps the axle, the hub motor gives M_3 about it. Fixed axes X, Y, Z, Z
+ * turn; the wheel's own wheel carrier (`guided`) keeps the axle, the hub motor gives M_3 about it. Fixed axes X, Y, Z, Z
  * up.
  *
  *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c

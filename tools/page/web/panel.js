@@ -179,7 +179,7 @@ function setUpReady(live, wheels) {
   };
 }
 
-/** The switch of the hub carrier, on which the wheel does not turn about the vertical. */
+/** The switch of the wheel carrier, on which the wheel does not turn about the vertical. */
 function setUpCarrier(live) {
   const box = $('#guided');
   box.onchange = () => live.setStart('guided', Number(box.checked));
@@ -268,7 +268,7 @@ function setUpNotes(live) {
     refusal(live.refusal);
     const fault = doubtOf(wheel);
     const chance = tipsByRounding(live.wheel.table) &&
-        'Rounding alone tips this exactly upright wheel and decides time and side. On its hub carrier (guided) it stays upright.';
+        'Rounding alone tips this exactly upright wheel and decides time and side. On its wheel carrier (guided) it stays upright.';
     doubt(fault ? `${fault} Choose a body: its moments follow.` : chance || null);
     scaled(live.scaled);
   };
