@@ -40,7 +40,7 @@ inline constexpr int row_count = event_count - 1;
 extern const EventRow event_rows[row_count];  // in the order of Event
 inline const EventRow& row_of(Event event) { return event_rows[static_cast<int>(event) - 1]; }
 inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends && row.ends(setup); }
-// Counted, and logged where it occurs.
+// Logged where it first occurs in a run.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }
 
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.

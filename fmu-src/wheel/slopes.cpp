@@ -1,6 +1,6 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
-// rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force), and a rate
-// that another variable has is read there (Row::read_rate).
+// rounding; a variable that is not linear in the forces follows from those of the forces and of the motion
+// (Row::by_force), and a rate that another variable has is read there (Row::read_rate).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,25 +24,30 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}, {-2.5, 4.5, -3.5, 1}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}, {-2.5, 4.5, -3.5, 1}}};
 
-// The derivatives of the variables that are asked for, and behind them those of the forces: of several steps, for each
-// that with the least error.
+// The derivatives of the variables that are asked for, and behind them, where one needs it, those of what acts: of
+// several steps, for each that with the least error.
 struct Pass {
   static constexpr std::size_t computed = variable_count - stored_count,
-                               count = computed + sizeof(Force) / sizeof(double);
+                               count = computed + sizeof(Acting) / sizeof(double);
   using Numbers = std::array<double, count>;
-  bool asked[computed] = {};
+  bool asked[computed] = {}, by_force = false;
   Numbers centre = {}, slope = {}, error;
 
   Pass() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
 
+  void ask(unsigned variable) {
+    asked[variable - stored_count] = true;
+    by_force |= row_of(variable).by_force != nullptr;
+  }
   double of(unsigned variable) const { return slope[variable - stored_count]; }
 
   Numbers sample(Reading reading) const {
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)
       if (asked[k]) numbers[k] = row_of(stored_count + k).read(reading);
-    const Force force = force_of(reading);
-    std::memcpy(&numbers[computed], &force, sizeof force);
+    if (!by_force) return numbers;
+    const Acting acting = acting_of(reading);
+    std::memcpy(&numbers[computed], &acting, sizeof acting);
     return numbers;
   }
 
@@ -96,12 +101,12 @@ struct Pass {
   // What is not linear in the forces follows from them. tau_rate: the part of the rate of tau that is left out.
   void complete(double tau_rate = 0) {
     slope[variable::tau - stored_count] += tau_rate;
-    Force force, rate;
-    std::memcpy(&force, &centre[computed], sizeof force);
+    Acting acting, rate;
+    std::memcpy(&acting, &centre[computed], sizeof acting);
     std::memcpy(&rate, &slope[computed], sizeof rate);
     rate.axle.tau += tau_rate;
     for (unsigned k = 0; k < computed; ++k)
-      if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(force, rate);
+      if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(acting, rate);
   }
 };
 
@@ -220,7 +225,10 @@ void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* ou
   Reading reading(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k)
-    missing |= pass.asked[outputs[k] - stored_count] = !row_of(outputs[k]).read_rate;
+    if (!row_of(outputs[k]).read_rate) {
+      pass.ask(outputs[k]);
+      missing = true;
+    }
   if (missing) take_along_motion(w, pass);
   for (std::size_t k = 0; k < count; ++k) {
     const Row& row = row_of(outputs[k]);
@@ -238,7 +246,7 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   Pass pass;
-  for (std::size_t k = 0; k < count; ++k) pass.asked[unknowns[k] - stored_count] = true;
+  for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
   if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.of(unknowns[k]);
   return true;

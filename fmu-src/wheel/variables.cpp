@@ -47,7 +47,7 @@ double slip(const Reading& now, int axis) {
 }
 
 double brake_moment(Reading& now) {
-  const WheelAxleMoment axle = force_of(now).axle;
+  const WheelAxleMoment axle = acting_of(now).axle;
   return wheel_brake_moment(&axle);
 }
 
@@ -62,7 +62,7 @@ struct Access {
   variable::Reference variable;
   double (*read)(Reading&);
   double (*read_rate)(Reading&) = nullptr;
-  double (*by_force)(const Force&, const Force&) = nullptr;
+  double (*by_force)(const Acting&, const Acting&) = nullptr;
 };
 
 #define AT(expression) [](Reading& now) -> double { return expression; }
@@ -90,7 +90,7 @@ constexpr Access readers[] = {
     {variable::lambda_y, AT(horizontal_force(now, 1))},
     {variable::tau, AT(now.dynamics().tau)},
     {variable::tau_brake, AT(brake_moment(now)), nullptr,
-     [](const Force& force, const Force& rate) { return wheel_brake_moment_rate(&force.axle, &rate.axle); }},
+     [](const Acting& acting, const Acting& rate) { return wheel_brake_moment_rate(&acting.axle, &rate.axle); }},
     {variable::slip_x, AT(slip(now, 0))},
     {variable::slip_y, AT(slip(now, 1))},
     {variable::M_guide_1, AT(guide_moment(now, 0))},
@@ -101,7 +101,7 @@ constexpr Access readers[] = {
     {variable::omega_z_dot, AT(now.dynamics().omega_z_dot)},
     {variable::E, AT(energy(now))},
     {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda)), nullptr,
-     [](const Force& force, const Force& rate) { return wheel_required_friction_rate(force.lambda, rate.lambda); }},
+     [](const Acting& acting, const Acting& rate) { return wheel_required_friction_rate(acting.lambda, rate.lambda); }},
     {variable::contact_mode, AT(now.scene.contact)},
     {variable::friction_mode, AT(friction_mode(now))},
     {variable::n_steps, AT(double(now.counters.steps))},
@@ -139,10 +139,10 @@ static_assert(std::size(rows) == variable_count && std::size(readers) == variabl
 
 const Row& row_of(unsigned variable) { return rows[variable]; }
 
-Force force_of(Reading& now) {
+Acting acting_of(Reading& now) {
   const WheelDynamics& d = now.dynamics();
-  const WheelScene& scene = now.scene;
-  return {{d.lambda[0], d.lambda[1], d.lambda[2]}, {d.tau, d.lambda[2], scene.wheel.s, scene.load.brake}};
+  const WheelAxleMoment axle = {d.tau, d.lambda[2], now.scene.wheel.s, now.scene.load.brake};
+  return {now.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
 }
 
 Limit limit_passed(unsigned v, double value) {

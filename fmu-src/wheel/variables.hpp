@@ -11,8 +11,10 @@ namespace wheel {
 
 struct Reading;
 
-// What acts on the wheel at the ground, fixed axes, N, and about the axle; or its rate of change by some quantity.
-struct Force {
+// How the wheel moves, and what acts on it at the ground, fixed axes, N, and about the axle; or the rates of these by
+// some quantity.
+struct Acting {
+  WheelKinematics motion;
   double lambda[3];
   WheelAxleMoment axle;
 };
@@ -44,12 +46,12 @@ struct Row {
   double start, min, max;         // of stored variables; others have no limits
   double (*read)(Reading&);       // computed variables, else null
   double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.cpp
-  // The derivative of what is not linear in the forces, from forces and derivatives of the forces; else null.
-  double (*by_force)(const Force& force, const Force& rate);
+  // The derivative of what is not linear in the forces, from the present and the rates; else null.
+  double (*by_force)(const Acting& now, const Acting& rate);
 };
 
 const Row& row_of(unsigned variable);
-Force force_of(Reading& now);
+Acting acting_of(Reading& now);
 
 // A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the
 // message of it: name, value, limit.

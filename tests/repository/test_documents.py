@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from support.driver import DERIVATIVES, STATES
 from support.paths import ROOT, copy_checkout
 
 from publishing import variables
@@ -191,6 +192,29 @@ def test_the_list_of_equations_has_each_of_the_paper_once_with_a_function_and_a_
         numbers += range(first, others[0] + 1) if "–" in equations else [first, *others]  # noqa: RUF001
         assert re.search(r"`\w+`.*, `test_\w+`$", rest), equations
     assert numbers == list(range(1, 34))
+
+
+# Read as the equations of motion give them, without an equation of their own.
+PLAIN = {*STATES, *DERIVATIVES, "Z_O", "Z_O_dot", "phi_ddot", "lambda_1", "lambda_2", "lambda_3", "tau"}
+
+
+def outputs_in(page: str) -> set[str]:
+    """In the first column of the table of outputs."""
+    table = page.partition("| output |")[2].partition("\n\n")[0]
+    cells = re.findall(r"^\| ([^|]*) \|", table, re.MULTILINE)
+    return {name for cell in cells for name in re.findall(r"`(\w+)`", cell)}
+
+
+def test_the_equations_have_a_row_for_every_output_that_is_not_read_off_the_motion() -> None:
+    outputs = {row.name for row in variables.read_variables() if row.causality == "output"}
+    page = TEXTS["docs/equations.md"]
+    assert outputs - PLAIN == outputs_in(page) - {"mu_required"} != outputs_in(page.replace("`X_C`, ", ""))
+
+
+def test_a_test_of_physics_names_every_parameter_and_input() -> None:
+    given = {row.name for row in variables.read_variables() if row.causality in ("parameter", "input")}
+    named = words("tests/physics/*.py")
+    assert given <= named and "J_hub" not in named
 
 
 OUTSIDE = r"(^|[^A-Za-z0-9_./])/(work|home|root|Users)/[A-Za-z0-9_.-]|ROOT\.parent|CMAKE_SOURCE_DIR\}/\.\."
