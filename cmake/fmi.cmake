@@ -13,7 +13,7 @@ string(REPLACE windows win wheel_platform ${wheel_platform})
 # wheel.fmu in the build folder: description, library, documentation, licences; same commit, same bytes.
 function(add_fmu target)
   set(fmu ${CMAKE_BINARY_DIR}/wheel.fmu)
-  set(packer ${CMAKE_SOURCE_DIR}/cmake/pack_fmu.py)
+  set(packer ${CMAKE_SOURCE_DIR}/tools/wheelfmu/fmu/pack_fmu.py)
   as_pattern(archive ${CMAKE_SOURCE_DIR}/fmu-src/archive)
   file(GLOB_RECURSE contents CONFIGURE_DEPENDS ${archive}/*)
   # Eigen's licence: beside its headers, or in Debian's package.

@@ -2,7 +2,7 @@
 set(VARIABLE_ROWS_FOLDER ${CMAKE_BINARY_DIR}/generated)
 set(VARIABLE_ROWS ${VARIABLE_ROWS_FOLDER}/variables.inc)
 file(MAKE_DIRECTORY ${VARIABLE_ROWS_FOLDER})
-set(made_from ${CMAKE_SOURCE_DIR}/cmake/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml)
+set(made_from ${CMAKE_SOURCE_DIR}/tools/wheelfmu/fmu/variable_rows.py ${CMAKE_SOURCE_DIR}/modelDescription.xml)
 add_custom_command(
   OUTPUT ${VARIABLE_ROWS}
   COMMAND ${Python3_EXECUTABLE} ${made_from} ${VARIABLE_ROWS}

@@ -23,7 +23,7 @@ from scipy.linalg import solve_continuous_are
 from scipy.optimize import bisect
 
 with suppress(ImportError):  # of the project; a copy of this folder has matplotlib's own look
-    from diagrams import style
+    from wheelfmu.diagrams import style
 
     style.use_style()
     plt.rcParams["axes.prop_cycle"] = plt.cycler(color=[style.BLUE, style.VERMILLION])

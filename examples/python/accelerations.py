@@ -1,6 +1,16 @@
 """The same four lines as examples/c/accelerations.c, from Python."""
 
-from wheel_equations import FRICTIONLESS, HELD, REDUCED, ROLLING, Motion, dynamics, paper_wheel, scene, start
+from wheelfmu.fmu.wheel_equations import (
+    FRICTIONLESS,
+    HELD,
+    REDUCED,
+    ROLLING,
+    Motion,
+    dynamics,
+    paper_wheel,
+    scene,
+    start,
+)
 
 wheel = paper_wheel(s=0.03)
 rolling = start(REDUCED, wheel, Motion(psi=1.570796, theta=1.308997, phi_dot=-2))

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import two_maps, upright_limit, wheel_of
-from study import Study
-from values import scale
 
-from diagrams import style
+from wheelfmu.diagrams import style
+from wheelfmu.fmu.values import scale
+from wheelfmu.studies import Study
+from wheelfmu.studies.drawing import two_maps, upright_limit, wheel_of
 
 ANGLES, SPINS = 160, 125  # 2 * 160 * 125 = 40,000 wheels
 study = Study(

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import two_maps, wheel_of
-from study import Study
-from values import scale
 
-from diagrams import style
+from wheelfmu.diagrams import style
+from wheelfmu.fmu.values import scale
+from wheelfmu.studies import Study
+from wheelfmu.studies.drawing import two_maps, wheel_of
 
 SIDE = 100
 study = Study(

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from drawing import rolling_inertia, upright_limit, wheel_of
 from matplotlib.ticker import LogLocator
-from study import Study
-from values import scale
 
-from diagrams import style
+from wheelfmu.diagrams import style
+from wheelfmu.fmu.values import scale
+from wheelfmu.studies import Study
+from wheelfmu.studies.drawing import rolling_inertia, upright_limit, wheel_of
 
 study = Study(
     grid={"phi_dot_start": [-3.0, -4.0, -6.0, -10.0], "s": np.linspace(0.0, 0.1, 401)},

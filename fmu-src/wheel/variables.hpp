@@ -1,5 +1,5 @@
 // The FMU's variables as one table: the row number is the value reference. Names, types, roles, start values and limits
-// come from modelDescription.xml at build time (variables.inc, by cmake/variable_rows.py); how a calculated variable
+// come from modelDescription.xml at build time (variables.inc, by fmu/variable_rows.py); how a calculated variable
 // is read stands in variables.cpp. Units and frames: docs/variables.md.
 #pragma once
 

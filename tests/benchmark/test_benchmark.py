@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 from support.bounds import beyond, within
-from support.motion import Library
 
-from .problems import PROBLEMS, by_fmu, by_reference, errors
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.problems import PROBLEMS, by_fmu, by_reference, errors
 
 each = pytest.mark.parametrize("name", PROBLEMS)
 

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 from fmpy.fmi2 import fmi2EventInfo
-from support import driver
-from support.driver import CO_SIMULATION, DISCARD, ERROR, MODEL_EXCHANGE, OK, FMU2Wheel
+
+from wheelfmu.fmu import driver
+from wheelfmu.fmu.driver import CO_SIMULATION, DISCARD, ERROR, MODEL_EXCHANGE, OK, FMU2Wheel
 
 KINDS = ("model exchange", "co-simulation")  # at the place of FMI's number
 Situation = tuple[int, str]  # kind and state

@@ -4,9 +4,10 @@ from ctypes import POINTER, addressof, byref, c_char, c_char_p, c_double, c_int,
 
 import pytest
 from contract.call_states import KINDS, OF, SITUATIONS, STATES, TABLE, bring_to, call, sound_arguments
-from support.driver import CO_SIMULATION, DISCARD, ERROR, OK
-from support.exchange import loaded
-from support.scenes import KINDS as SCENES
+
+from wheelfmu.fmu.driver import CO_SIMULATION, DISCARD, ERROR, OK
+from wheelfmu.truth.exchange import loaded
+from wheelfmu.truth.scenes import KINDS as SCENES
 
 TYPES = ("Real", "Integer", "Boolean", "String")
 

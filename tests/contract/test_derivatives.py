@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
-from support.scenes import AT_REST, KINDS
-from support.sliding import SLIDES
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel
+from wheelfmu.truth.scenes import AT_REST, KINDS
+from wheelfmu.truth.sliding import SLIDES
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 H = 2.0**-9  # s, between the points of the difference

@@ -2,7 +2,6 @@
 
 import csv
 import re
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -12,12 +11,11 @@ import pytest
 from fmpy import validation
 from lxml import etree
 from support.bounds import EPSILON, beyond, within
-from support.driver import CHOICES, DERIVATIVES, DISCARD, INDICATORS, OK, STATES
-from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT / "cmake"))
-from description.measuring import event_indicators, measured
-from description.numbering import numbered
+from wheelfmu.fmu.description.measuring import event_indicators, measured
+from wheelfmu.fmu.description.numbering import numbered
+from wheelfmu.fmu.driver import CHOICES, DERIVATIVES, DISCARD, INDICATORS, OK, STATES
+from wheelfmu.fmu.paths import ROOT
 
 FULL_TURN = 2 * np.pi
 SCHEMAS = Path(validation.__file__).parent / "schema"

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
-from support.scenes import THETA_0
+
+from wheelfmu.fmu.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
+from wheelfmu.truth.scenes import THETA_0
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssv
-from support.motion import Library
 
-from release import evidence
+from wheelfmu.release import evidence
+from wheelfmu.truth.motion import Library
 
 pytestmark = pytest.mark.local
 

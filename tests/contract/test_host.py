@@ -6,12 +6,13 @@ from copy import copy
 from ctypes import c_double
 
 import pytest
-from support.driver import OK, WARNING
 from support.host import HOSTS, LIBM, Host, present, trap
-from support.motion import feed
-from support.scenes import FORCED, KINDS, SCENES, Scene
-from support.schedule import Schedule
-from support.sliding import SLIDES
+
+from wheelfmu.fmu.driver import OK, WARNING
+from wheelfmu.truth.motion import feed
+from wheelfmu.truth.scenes import FORCED, KINDS, SCENES, Scene
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import SLIDES
 
 JUMP = Schedule(((0.0, {"M_3": (0, 40), "M_brake": 3.0, "F_Y": 20.0}),))
 ALL = SCENES | SLIDES | {f"start of {name}": Scene(start) for name, start in KINDS.items()}

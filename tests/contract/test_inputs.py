@@ -10,8 +10,9 @@ from math import factorial
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import ERROR, OK, FMU2Wheel, shifted
-from support.scenes import AT_REST
+
+from wheelfmu.fmu.driver import ERROR, OK, FMU2Wheel, shifted
+from wheelfmu.truth.scenes import AT_REST
 
 RHO = 0.35
 INERTIA = 1.8 + 20 * RHO**2  # about the contact, kg m2

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from support.driver import ERROR, OK
-from support.scenes import KINDS
+
+from wheelfmu.fmu.driver import ERROR, OK
+from wheelfmu.truth.scenes import KINDS
 
 TIMES = np.arange(1, 25) * 0.125
 SETTINGS = [values | {"phi_dot_start": -2.0 - 0.1 * k} for k in range(4) for values in KINDS.values()]

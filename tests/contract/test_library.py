@@ -2,17 +2,15 @@
 
 import importlib.util
 import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
 import fmpy
 import pytest
 from contract.call_states import TABLE
-from support.paths import ROOT
 
-sys.path.insert(0, str(ROOT / "cmake"))
-import pack_fmu
+from wheelfmu.fmu import pack_fmu
+from wheelfmu.fmu.paths import ROOT
 
 pytestmark = pytest.mark.local
 # Beside those of the table of call states.

@@ -8,7 +8,8 @@ import pytest
 from contract.call_states import STATES, TABLE, bring_to, call
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from support.bounds import within
-from support.driver import DISCARD, ERROR, OK
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK
 
 FRICTION = {"s": 0.03}
 FIRST_STICK = 1.225520636  # s, the first row of the reference's table of events

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from itertools import combinations
 from math import inf, isclose, nan, pi
 
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Value
-from support.exchange import loaded
-from support.motion import Library
-from support.paths import ROOT
-from support.sliding import HUB, ROAD
+from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Value
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.truth.exchange import loaded
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.sliding import HUB, ROAD
 
 START = 7.25  # s
 FULL = (1.8 / 0.35**2 + 20) * 9.81 * 0.35  # N m: an upright wheel that brakes so requires lambda_x = N

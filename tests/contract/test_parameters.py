@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, within
-from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
 TRIANGLE = "kg m2: none may exceed the sum of the other two."

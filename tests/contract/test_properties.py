@@ -10,7 +10,8 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from support.bounds import within
-from support.driver import OK, FMU2Wheel
+
+from wheelfmu.fmu.driver import OK, FMU2Wheel
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 BOUND = 6e-11  # of the energy moved; a part that is left out shows by far more

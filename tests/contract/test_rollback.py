@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from reference.tables import read_table
-from support.driver import ERROR, OK, FMU2Wheel
-from support.scenes import KINDS
+
+from wheelfmu.fmu.driver import ERROR, OK, FMU2Wheel
+from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.scenes import KINDS
 
 STEP = 0.125
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")

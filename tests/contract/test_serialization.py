@@ -11,9 +11,10 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
-from support.driver import ERROR, OK, FMU2Wheel
-from support.motion import Library
-from support.scenes import KINDS
+
+from wheelfmu.fmu.driver import ERROR, OK, FMU2Wheel
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import KINDS
 
 UNKNOWN = "this FMU did not create the state"
 HEADER, SUM = 3, 2  # words: mark, size, checksum of what follows; the place of the last

@@ -7,8 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
-from support.sliding import HUB, ROAD, UPRIGHT
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+from wheelfmu.truth.sliding import HUB, ROAD, UPRIGHT
 
 WEIGHT, g = 20 * 9.81, 9.81
 LOCKED = {**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3}

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from support.bounds import EPSILON, within
-from support.driver import COUNTERS, ERROR, OK
-from support.scenes import KINDS, SCENES
+
+from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
+from wheelfmu.truth.scenes import KINDS, SCENES
 
 SECONDS = [float(t) for t in range(1, 11)]
 

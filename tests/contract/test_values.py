@@ -6,7 +6,8 @@ from ctypes import c_double, c_int
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
 
 
 def set_many(w: FMU2Wheel, kind: str, references: Sequence[int], values: Sequence[float]) -> int:

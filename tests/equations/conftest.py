@@ -1,7 +1,8 @@
 """A test that names one of these runs for each: formulation, law of friction, equal moments of inertia or any."""
 
 import pytest
-from support import equations as eq
+
+from wheelfmu.fmu import equations as eq
 
 
 @pytest.fixture(params=[eq.REDUCED, eq.MULTIBODY], ids=["reduced", "multibody"])

@@ -6,10 +6,11 @@ of the paper and the rotation-matrix reference under reference/ judge the produc
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Paper, dynamics_of, papers_state, solved
-from equations.pointwise import distance, draw, dynamics, referenced, relative
-from support import equations as eq
 from support.bounds import EPSILON, beyond, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.paper_transcription import Paper, dynamics_of, papers_state, solved
+from wheelfmu.truth.pointwise import distance, draw, dynamics, referenced, relative
 
 
 def test_the_random_states_include_both_signs_of_the_normal_force() -> None:

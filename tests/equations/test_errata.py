@@ -5,9 +5,10 @@ SciPy. test_paper_matrices.py has the mended matrices.
 """
 
 import numpy as np
-from equations.misprints import WHEEL, papers_start, rolled
-from equations.paper_transcription import THETA, Paper, states, times, transposed
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+
+from wheelfmu.truth.misprints import WHEEL, papers_start, rolled
+from wheelfmu.truth.paper_transcription import THETA, Paper, states, times, transposed
 
 ENERGY = 75.1168064  # J, at the start of the free wheel
 

@@ -4,9 +4,10 @@ Random scenes with loads and brakes (pointwise.py). Carrier frame.
 """
 
 import numpy as np
-from equations.pointwise import Table, draw, dynamics
-from support import equations as eq
 from support.bounds import EPSILON, beyond, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.pointwise import Table, draw, dynamics
 
 ROWS = 20_000
 

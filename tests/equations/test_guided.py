@@ -7,10 +7,11 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Carried, dynamics_of, papers_state, solved
-from equations.pointwise import ACCELERATIONS, Table, draw
-from support import equations as eq
 from support.bounds import beyond, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.paper_transcription import Carried, dynamics_of, papers_state, solved
+from wheelfmu.truth.pointwise import ACCELERATIONS, Table, draw
 
 FORMS, SLIDES = (eq.REDUCED, eq.EULER, eq.MULTIBODY), (eq.SLIDING, eq.MULTIBODY_SLIDING)
 BOUND = 1e-10

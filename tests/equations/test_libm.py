@@ -11,9 +11,10 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from support import equations as eq
 from support.bounds import beyond, within
-from support.paths import ROOT, build_folder
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.fmu.paths import ROOT, build_folder
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,11 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Paper, times
-from equations.pointwise import Table, draw, relative
-from support import equations as eq
 from support.bounds import EPSILON, beyond, relative_error, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.paper_transcription import Paper, times
+from wheelfmu.truth.pointwise import Table, draw, relative
 
 ROWS = 2000
 

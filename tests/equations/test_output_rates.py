@@ -9,11 +9,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from equations.paper_transcription import Paper, papers_state, solved
-from equations.pointwise import Table, random_motions, random_scenes, relative
-from support import equations as eq
 from support.bounds import EPSILON, beyond, within
-from support.driver import OK, FMU2Wheel
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.fmu.driver import OK, FMU2Wheel
+from wheelfmu.truth.paper_transcription import Paper, papers_state, solved
+from wheelfmu.truth.pointwise import Table, random_motions, random_scenes, relative
 
 BOUND = 1e-9
 STEP = 1e-40

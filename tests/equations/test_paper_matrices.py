@@ -6,10 +6,21 @@ test_equations.py then holds the product against this transcription; test_errata
 
 import numpy as np
 import pytest
-from equations.paper_transcription import PHI, PSI, THETA, Paper, paper_table, products_state, states, times, transposed
 from scipy.spatial.transform import Rotation
-from support import equations as eq
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.paper_transcription import (
+    PHI,
+    PSI,
+    THETA,
+    Paper,
+    paper_table,
+    products_state,
+    states,
+    times,
+    transposed,
+)
 
 WHEEL = paper_table(J_x=0.8, J_y=1.1, s=0.03)
 

@@ -4,7 +4,8 @@ from math import nan
 
 import numpy as np
 import pytest
-from support import equations as eq
+
+from wheelfmu.fmu import equations as eq
 
 MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
 MEANT = [{"kind": eq.FRICTIONLESS}, {"kind": eq.ROLLING, "sigma": -1}, {"kind": eq.ROLLING, "sigma": 1, "brake": 5.0}]

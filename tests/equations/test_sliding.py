@@ -1,4 +1,4 @@
-"""The wheel that slides: two forms, and Newton and Euler with friction as a force at the contact (tests/reference).
+"""The wheel that slides: two forms, and Newton and Euler with friction as a force at the contact (truth/reference).
 
 Random states of any inertia, under loads, each law of rolling friction, any slip; some wheels jam: N is
 infinite. Errors relative to the largest entry of their group.
@@ -10,14 +10,15 @@ from math import pi, tanh
 
 import numpy as np
 import pytest
-from equations.pointwise import Table, distance, random_motions, random_scenes, relative
-from reference import Wheel
-from reference.frames import quaternion, rotation, to_body, to_fixed
-from reference.motion import angle_accelerations, body_rates
-from reference.newton_euler import Law, carrier_moment
-from reference.sliding_contact import Sliding, respond, resting_directions
-from support import equations as eq
 from support.bounds import EPSILON, beyond, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.pointwise import Table, distance, random_motions, random_scenes, relative
+from wheelfmu.truth.reference import Wheel
+from wheelfmu.truth.reference.frames import quaternion, rotation, to_body, to_fixed
+from wheelfmu.truth.reference.motion import angle_accelerations, body_rates
+from wheelfmu.truth.reference.newton_euler import Law, carrier_moment
+from wheelfmu.truth.reference.sliding_contact import Sliding, respond, resting_directions
 
 ROWS = 3000
 FORMS = pytest.mark.parametrize("form", [eq.SLIDING, eq.MULTIBODY_SLIDING], ids=["reduced", "multibody"])

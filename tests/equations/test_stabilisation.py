@@ -6,10 +6,11 @@ docs/decisions/solver.md. Fixed axes for O.
 """
 
 import numpy as np
-from equations.paper_transcription import stabilised_rate
-from equations.pointwise import Table, draw, relative
-from support import equations as eq
 from support.bounds import EPSILON, beyond, within
+
+from wheelfmu.fmu import equations as eq
+from wheelfmu.truth.paper_transcription import stabilised_rate
+from wheelfmu.truth.pointwise import Table, draw, relative
 
 OFF_THE_CONSTRAINTS = np.array([0, 0, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0])  # m in Z_O, m/s in the velocity of O
 SPIN = 11

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
-from support.exchange import Run, exchange, loaded, no_inputs
-from support.motion import Library
-from support.scenes import AT_REST
+
+from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
+from wheelfmu.truth.exchange import Run, exchange, loaded, no_inputs
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import AT_REST
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
 WEIGHT = 20 * 9.81  # N

@@ -9,16 +9,18 @@ from math import pi
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from physics.exact_motions import UPRIGHT
-from physics.measure import FRICTION, instants_error
-from reference import Start, Wheel, solve
-from reference.tables import read_table
-from support.bounds import beyond, range_error, range_errors, within
-from support.closed_forms import fall_time, rolling_inertia
-from support.driver import HEADLINE
-from support.exchange import Run, exchange, no_inputs
-from support.motion import Library, start_values
-from support.scenes import PUSH
+from support.bounds import beyond, within
+
+from wheelfmu.fmu.driver import HEADLINE
+from wheelfmu.truth.closed_forms import fall_time, rolling_inertia
+from wheelfmu.truth.errors import range_error, range_errors
+from wheelfmu.truth.exact_motions import UPRIGHT
+from wheelfmu.truth.exchange import Run, exchange, no_inputs
+from wheelfmu.truth.measure import FRICTION, instants_error
+from wheelfmu.truth.motion import Library, start_values
+from wheelfmu.truth.reference import Start, Wheel, solve
+from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.scenes import PUSH
 
 RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
 

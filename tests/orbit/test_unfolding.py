@@ -9,13 +9,13 @@ from math import cos, sin
 
 import numpy as np
 import pytest
-from reference import Start, Wheel
 from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import circle_spin, critical_spin
-from support.paths import probe
 
-from .orbit import Array, Halves, Orbit, energies, headline_of, stepped
+from wheelfmu.fmu.paths import probe
+from wheelfmu.truth.closed_forms import circle_spin, critical_spin
+from wheelfmu.truth.orbit import Array, Halves, Orbit, energies, headline_of, stepped
+from wheelfmu.truth.reference import Start, Wheel
 
 PAPER = Start()
 SLANTED = Start(psi=0.4, theta=1.2, psi_dot=0.5, theta_dot=0.3, phi_dot=-5.0, X_O=0.5, Y_O=-0.3)

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.exact_motions import measured_critical_spin
 from support.bounds import EPSILON, beyond, within
-from support.motion import Library
 
-from . import kane, wheels
-from .wheels import read
+from wheelfmu.truth.exact_motions import measured_critical_spin
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.others import kane, wheels
+from wheelfmu.truth.others.wheels import read
 
 
 @pytest.mark.parametrize("symmetric", [True, False], ids=["J_x = J_y", "any J"])

@@ -6,8 +6,9 @@ moment about the axle turns is J = J_z + m R^2. SI units.
 
 import numpy as np
 from support.bounds import EPSILON, beyond, within
-from support.motion import Library, Run
-from support.schedule import Schedule
+
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.schedule import Schedule
 
 R, M, G = 0.35, 20.0, 9.81
 J = 1.8 + M * R**2

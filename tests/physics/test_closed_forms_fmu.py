@@ -8,12 +8,12 @@ from math import cosh, pi
 
 import numpy as np
 import pytest
-from reference import Wheel
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import critical_spin, tipping_inertia, upright_stiffness
-from support.motion import Library
 
-from . import exact_motions as exact
+from wheelfmu.truth import exact_motions as exact
+from wheelfmu.truth.closed_forms import critical_spin, tipping_inertia, upright_stiffness
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.reference import Wheel
 
 THIN = Wheel(r=0.0)
 

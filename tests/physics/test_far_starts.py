@@ -9,9 +9,10 @@ from math import atan2, cos, sin
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.driver import OK, FMU2Wheel
-from support.exchange import exchange
-from support.motion import Library
+
+from wheelfmu.fmu.driver import OK, FMU2Wheel
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library
 
 TIMES = np.arange(1, 26) * 0.1
 SHAPES = ("theta", "psi_dot", "theta_dot", "phi_dot", "omega_z", "lambda_1", "lambda_2", "lambda_3", "tau", "n_steps")

@@ -3,10 +3,12 @@ fast costs no more than a slower one, turn by turn."""
 
 import numpy as np
 import pytest
-from support.bounds import beyond, range_error, within
-from support.driver import Values
-from support.motion import Library, Run
-from support.schedule import Schedule
+from support.bounds import beyond, within
+
+from wheelfmu.fmu.driver import Values
+from wheelfmu.truth.errors import range_error
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.schedule import Schedule
 
 STATES = ("X_O", "Y_O", "theta", "psi", "phi", "psi_dot", "theta_dot", "phi_dot")
 SCENES: dict[str, tuple[Values, Schedule]] = {"free": ({}, Schedule()), "friction": ({"s": 0.03}, Schedule())}

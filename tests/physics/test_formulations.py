@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from fmpy import read_model_description
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import OK
-from support.exchange import exchange
-from support.motion import Library
-from support.paths import ROOT
-from support.schedule import Schedule
+
+from wheelfmu.fmu.driver import OK
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.schedule import Schedule
 
 VARIABLES = read_model_description(str(ROOT / "modelDescription.xml"), validate=False).modelVariables
 PARAMETERS = {v.name: float(v.start) for v in VARIABLES if v.causality == "parameter" and v.type == "Real"}

@@ -5,15 +5,15 @@ s = 0.03 m, Filippov's law at omega_z = 0 (physics facts 3 and 5). friction_mode
 
 import numpy as np
 import pytest
-from reference import Start, Wheel, solve
-from reference.tables import read_table
 from support.bounds import absolute_error, beyond, within
-from support.driver import OK
-from support.exchange import loaded
-from support.kept import kept
-from support.motion import Library
 
-from .measure import instants, instants_error
+from wheelfmu.fmu.driver import OK
+from wheelfmu.truth.exchange import loaded
+from wheelfmu.truth.kept import kept
+from wheelfmu.truth.measure import instants, instants_error
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.reference import Start, Wheel, solve
+from wheelfmu.truth.reference.tables import read_table
 
 EVENTS = read_table("paper_friction_events")
 

@@ -11,16 +11,16 @@ from math import cos, pi, tan
 
 import numpy as np
 import pytest
-from reference import Solution, Start, Wheel, solve
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import circle_spin, rolling_inertia
-from support.driver import ERROR, OK
-from support.exchange import INDICATORS, exchange, loaded, no_inputs
-from support.exchange import Run as ExchangeRun
-from support.motion import Library, start_values
-from support.schedule import Schedule
 
-from .cases import random_scene
+from wheelfmu.fmu.driver import ERROR, OK
+from wheelfmu.truth.cases import random_scene
+from wheelfmu.truth.closed_forms import circle_spin, rolling_inertia
+from wheelfmu.truth.exchange import INDICATORS, exchange, loaded, no_inputs
+from wheelfmu.truth.exchange import Run as ExchangeRun
+from wheelfmu.truth.motion import Library, start_values
+from wheelfmu.truth.reference import Solution, Start, Wheel, solve
+from wheelfmu.truth.schedule import Schedule
 
 PAPER = Wheel()
 UPRIGHT = {"theta_start": pi / 2, "psi_start": 0.0, "phi_dot_start": -20.0}

@@ -8,16 +8,17 @@ from math import atan, cos, pi, radians, sin, tan
 
 import numpy as np
 import pytest
-from reference import Wheel
 from scipy.integrate import simpson, solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import ERROR, OK, STATES
-from support.exchange import exchange
-from support.motion import Library, Run
-from support.motion import run as attempt
-from support.scenes import GENERAL
-from support.schedule import Schedule
-from support.sliding import LOCK, SLIDES, UPRIGHT, stopping
+
+from wheelfmu.fmu.driver import ERROR, OK, STATES
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.motion import run as attempt
+from wheelfmu.truth.reference import Wheel
+from wheelfmu.truth.scenes import GENERAL
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import LOCK, SLIDES, UPRIGHT, stopping
 
 M, R_0, TUBE, J_Z, G = 20.0, 0.3, 0.05, 1.8, 9.81
 CAMBER = radians(80)

@@ -4,12 +4,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from reference import Wheel
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import linear_integrals
-from support.motion import Library
 
-from .measure import constraint_drift
+from wheelfmu.truth.closed_forms import linear_integrals
+from wheelfmu.truth.measure import constraint_drift
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.reference import Wheel
 
 
 def chaplygin_gap(library: Library, judged: Wheel, s: float = 0.0) -> float:

@@ -1,4 +1,4 @@
-"""Scenes beside the paper's, against the independent reference of tests/reference.
+"""Scenes beside the paper's, against the independent reference of truth/reference.
 
 Fast rolling, near flat, thin disc, J_x != J_y, heavy and light friction, past upright, spin either way,
 and the six inputs: the cases of cases.py.
@@ -6,9 +6,9 @@ and the six inputs: the cases of cases.py.
 
 import pytest
 from support.bounds import beyond, within
-from support.motion import Library
 
-from .cases import CASES, error, transitions_gap
+from wheelfmu.truth.cases import CASES, error, transitions_gap
+from wheelfmu.truth.motion import Library
 
 all_cases = pytest.mark.parametrize("name", CASES)
 

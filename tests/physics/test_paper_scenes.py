@@ -5,11 +5,11 @@ s = 0 and s = 0.03 m, 10 s, J_x = J_y. Fixed axes.
 
 import numpy as np
 import pytest
-from reference.tables import read_table
 from support.bounds import EPSILON, beyond, within
-from support.motion import Library
 
-from .measure import FRICTION, energy_error, table_errors
+from wheelfmu.truth.measure import FRICTION, energy_error, table_errors
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.reference.tables import read_table
 
 BOUND = 1e-6  # of the output's range
 both = pytest.mark.parametrize("scene", FRICTION)

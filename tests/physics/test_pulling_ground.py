@@ -9,12 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import Start, Wheel, solve
-from support.bounds import beyond, range_error, within
-from support.closed_forms import rolling_inertia
-from support.driver import HEADLINE
-from support.motion import Library, Run, start_values
-from support.schedule import Schedule
+from support.bounds import beyond, within
+
+from wheelfmu.fmu.driver import HEADLINE
+from wheelfmu.truth.closed_forms import rolling_inertia
+from wheelfmu.truth.errors import range_error
+from wheelfmu.truth.motion import Library, Run, start_values
+from wheelfmu.truth.reference import Start, Wheel, solve
+from wheelfmu.truth.schedule import Schedule
 
 TIMES = np.linspace(0, 2, 41)
 WHEEL = Wheel(s=0.03)

@@ -8,19 +8,19 @@ from math import cos, degrees, hypot, pi, radians, sin
 
 import numpy as np
 import pytest
-from reference import Start, Wheel
-from reference.judge import carrier_axes, momenta
-from support import sliding
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.closed_forms import circle_spin
-from support.driver import DISCARD, ERROR, OK
-from support.motion import Library, Run, start_values
-from support.motion import run as attempt
-from support.scenes import THETA_0, Scene
-from support.schedule import Schedule
-from support.sliding import HUB, LOCK, ROAD, SLIDES, UPRIGHT, random_slide
 
-from .cases import KINDS, error
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK
+from wheelfmu.truth import sliding
+from wheelfmu.truth.cases import KINDS, error
+from wheelfmu.truth.closed_forms import circle_spin
+from wheelfmu.truth.motion import Library, Run, start_values
+from wheelfmu.truth.motion import run as attempt
+from wheelfmu.truth.reference import Start, Wheel
+from wheelfmu.truth.reference.judge import carrier_axes, momenta
+from wheelfmu.truth.scenes import THETA_0, Scene
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import HUB, LOCK, ROAD, SLIDES, UPRIGHT, random_slide
 
 PAPER = Wheel()
 R = PAPER.r_0 + PAPER.r

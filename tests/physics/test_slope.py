@@ -9,14 +9,14 @@ from math import atan, cos, pi, sin
 
 import numpy as np
 import pytest
-from reference import Wheel, solve
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.closed_forms import rolling_inertia
-from support.kept import kept
-from support.motion import Library, start_values
 
-from .cases import random_scene
-from .exact_motions import UPRIGHT
+from wheelfmu.truth.cases import random_scene
+from wheelfmu.truth.closed_forms import rolling_inertia
+from wheelfmu.truth.exact_motions import UPRIGHT
+from wheelfmu.truth.kept import kept
+from wheelfmu.truth.motion import Library, start_values
+from wheelfmu.truth.reference import Wheel, solve
 
 R, WEIGHT = 0.35, 20 * 9.81
 REST = {**UPRIGHT, "phi_dot_start": 0.0}

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from support.bounds import EPSILON, beyond, within
-from support.motion import Library, Run
-from support.schedule import Schedule
+
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.schedule import Schedule
 
 START = {
     **{"psi_start": 0.4, "theta_start": 1.2, "phi_start": 0.3, "psi_dot_start": 0.5, "theta_dot_start": -0.3},

@@ -8,15 +8,16 @@ from math import pi
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, beyond, range_errors, within
-from support.driver import OK
-from support.motion import Library, start_values
-from support.motion import run as attempt
-from support.scenes import SCENES
-from support.schedule import Schedule
-from support.sliding import SLIDES, random_slide
+from support.bounds import EPSILON, beyond, within
 
-from .cases import random_scene
+from wheelfmu.fmu.driver import OK
+from wheelfmu.truth.cases import random_scene
+from wheelfmu.truth.errors import range_errors
+from wheelfmu.truth.motion import Library, start_values
+from wheelfmu.truth.motion import run as attempt
+from wheelfmu.truth.scenes import SCENES
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import SLIDES, random_slide
 
 TOLERANCES = [10.0**-k for k in range(4, 14)]
 ADAMS, BDF, RUNGE_KUTTA = 2, 3, 4

@@ -11,14 +11,14 @@ from math import cos, sin
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.scenes import GENERAL
-from support.scenes import SCENES as ROLLING
-from support.sliding import SLIDES
 
-from reference import Inputs, Road, Solution, Start, Wheel, newton_euler, solve
-from reference.crossing import NODES, first_fall
-from reference.judge import contact_gap, energy_gap, impulse_gap, table_error
-from reference.tables import read_table
+from wheelfmu.truth.reference import Inputs, Road, Solution, Start, Wheel, newton_euler, solve
+from wheelfmu.truth.reference.crossing import NODES, first_fall
+from wheelfmu.truth.reference.judge import contact_gap, energy_gap, impulse_gap, table_error
+from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.scenes import GENERAL
+from wheelfmu.truth.scenes import SCENES as ROLLING
+from wheelfmu.truth.sliding import SLIDES
 
 SCENES = {name: scene for name, scene in ROLLING.items() if "friction_law" not in scene.start}
 SCENES |= {f"slides: {name}": scene for name, scene in SLIDES.items()}

@@ -9,14 +9,14 @@ from math import hypot, sqrt
 import numpy as np
 import pytest
 from support.bounds import absolute_error, beyond, within
-from support.sliding import SLIDES as SCENES
-from support.sliding import jamming
 
-from reference import Inputs, Road, Start, Wheel, solve
-from reference.model import Options
-from reference.modes import SLIDES, Contacts, Mode
-from reference.motion import initial_state
-from reference.sliding_contact import resting_directions
+from wheelfmu.truth.reference import Inputs, Road, Start, Wheel, solve
+from wheelfmu.truth.reference.model import Options
+from wheelfmu.truth.reference.modes import SLIDES, Contacts, Mode
+from wheelfmu.truth.reference.motion import initial_state
+from wheelfmu.truth.reference.sliding_contact import resting_directions
+from wheelfmu.truth.sliding import SLIDES as SCENES
+from wheelfmu.truth.sliding import jamming
 
 PAPER = Wheel()
 

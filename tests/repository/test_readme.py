@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import fall_inertia
-from support.paths import ROOT, build_folder
-from support.scenes import PAPER
+
+from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.truth.closed_forms import fall_inertia
+from wheelfmu.truth.scenes import PAPER
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOOLS = (ROOT / "docs" / "in_your_tool.md").read_text(encoding="utf-8")
@@ -50,7 +51,7 @@ def bash(commands: str, folder: Path) -> str:
 
 
 def python(lines: str, folder: Path) -> str:
-    return run("python", "-c", f"import sys; sys.path.insert(0, 'examples/python')\n{lines}", folder=folder)
+    return run("python", "-c", lines, folder=folder)
 
 
 def table(path: Path) -> np.ndarray:

@@ -12,15 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from support import exchange as exchanging
 from support.bounds import EPSILON, beyond, within
-from support.driver import FMU2Wheel
-from support.motion import Library, Run
-from support.paths import ROOT, copy_checkout
 
-sys.path.insert(0, str(ROOT / "cmake"))
-from description.measuring import measured
-from description.numbering import numbered, with_event_indicators
+from wheelfmu.fmu.description.measuring import measured
+from wheelfmu.fmu.description.numbering import numbered, with_event_indicators
+from wheelfmu.fmu.driver import FMU2Wheel
+from wheelfmu.fmu.paths import ROOT, copy_checkout
+from wheelfmu.truth import exchange as exchanging
+from wheelfmu.truth.motion import Library, Run
 
 LEAN = 1.29  # rad: the level of the recipe
 WAYS = {"unfolded": {}, "Runge-Kutta": {"method": 4}, "Adams": {"method": 2}, "multibody": {"formulation": 3}}

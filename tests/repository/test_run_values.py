@@ -13,13 +13,12 @@ import pytest
 from fmpy import simulate_fmu
 from scipy.integrate import quad
 from support.bounds import EPSILON, beyond, within
-from support.driver import ERROR
-from support.motion import run as attempt
-from support.paths import ROOT, build_folder
 
-sys.path.append(str(ROOT / "examples" / "python"))
-from values import REFUSED as RULES  # noqa: E402
-from values import doubt, refusal, variables  # noqa: E402
+from wheelfmu.fmu.driver import ERROR
+from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.fmu.values import REFUSED as RULES
+from wheelfmu.fmu.values import doubt, refusal, variables
+from wheelfmu.truth.motion import run as attempt
 
 PARAMETERS = variables((ROOT / "modelDescription.xml").read_bytes(), "parameter")
 BODIES = json.loads((ROOT / "examples" / "bodies.json").read_text(encoding="utf-8"))
@@ -32,7 +31,7 @@ def root(tmp_path: Path) -> Path:
 
 
 def ask(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(ROOT / "tools" / "diagrams" / "start_values.py"), *arguments]
+    command = [sys.executable, "-m", "wheelfmu.diagrams.start_values", *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 

@@ -8,16 +8,17 @@ import sys
 from pathlib import Path
 
 import pytest
-from csv_file import read_table
-from support.paths import ROOT
-from values import Fault
+
+from wheelfmu.fmu.csv_file import read_table
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault
 
 READS = {
-    "run": "tools/diagrams/start_values.py",
-    "study": "examples/studies/study/__main__.py",
-    "example": "examples/vehicles/vehicles/options.py",
-    "view": "tools/page/options.py",
-    "report": "tools/reports/options.py",
+    "run": "wheelfmu.diagrams.start_values",
+    "study": "wheelfmu.studies.options",
+    "example": "wheelfmu.vehicles.options",
+    "view": "wheelfmu.page.options",
+    "report": "wheelfmu.reports.options",
 }
 MOTION = "time,X_O\n0,0\n1,1\n"
 # For each kind: words of the refusal, and what is typed after each command.
@@ -154,7 +155,7 @@ TYPED = [(words, line) for words, *lines in FAULTS.values() for line in lines]
 def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """What the command's reader, by the standard library alone, makes of a line."""
     command, *words = line.split()
-    reads = [sys.executable, "-S", "-B", str(ROOT / READS[command]), *words]
+    reads = [sys.executable, "-S", "-B", str(ROOT / "tools"), READS[command], *words]
     return subprocess.run(reads, cwd=folder, env=os.environ | environment, capture_output=True, text=True)
 
 
@@ -272,12 +273,13 @@ echo "$*" | sed "s/.* m //; s/ .*//" >"$2"
 @pytest.fixture
 def simulated(tmp_path: Path) -> Path:
     """A checkout whose ./scripts/run has stubs of set-up, build, FMPy and pictures. FMPy's fails where m = 13 kg."""
-    for part in ("scripts", "tools/diagrams", "examples/python"):
+    for part in ("scripts", "tools"):
         shutil.copytree(ROOT / part, tmp_path / part)
+    (tmp_path / "examples").mkdir()
     for file in ("modelDescription.xml", "examples/wheels.json", "examples/bodies.json"):
         shutil.copy(ROOT / file, tmp_path / file)
     stubs = {"scripts/setup": "", "scripts/build": "", ".venv/bin/fmpy": FMPY}
-    stubs[".venv/bin/python"] = f'[ "$1" != -B ] || exec "{sys.executable}" "$@"'
+    stubs[".venv/bin/python"] = f'[ "$2" != wheelfmu.diagrams.start_values ] || exec "{sys.executable}" "$@"'
     for name, text in stubs.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
@@ -319,13 +321,12 @@ def test_of_two_runs_at_once_each_prints_that_its_own_results_are_ready(simulate
 
 def test_only_one_process_at_a_time_uses_a_place(tmp_path: Path) -> None:
     """The second waits for the first; at another place it does not."""
-    program = "import sys, time; from outputs import alone; from pathlib import Path; t = time.monotonic\n"
+    program = "import sys, time; from wheelfmu.fmu.outputs import alone; from pathlib import Path; t = time.monotonic\n"
     program += "with alone(Path(sys.argv[1])): print(t(), flush=True); time.sleep(1); print(t())"
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "examples" / "python")}
 
     def spans(*places: str) -> list[list[float]]:
         commands = [[sys.executable, "-c", program, tmp_path / place] for place in places]
-        started = [subprocess.Popen(c, env=environment, stdout=subprocess.PIPE, text=True) for c in commands]
+        started = [subprocess.Popen(c, stdout=subprocess.PIPE, text=True) for c in commands]
         return sorted([float(t) for t in one.communicate()[0].split()] for one in started)
 
     first, second = spans("a", "a")

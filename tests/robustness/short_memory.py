@@ -1,6 +1,6 @@
 """Lives of one instance in which memory runs short, at each allocation in turn, once or from there on.
 
-    LD_PRELOAD=short_memory.so python -m robustness.short_memory FOLDER FORMULATION LAW METHOD
+    LD_PRELOAD=short_memory.so python short_memory.py FOLDER FORMULATION LAW METHOD
 
 FOLDER holds the unpacked FMU. It fails where a promise is broken: an error has its message; once there is memory again,
 the same instance goes on with the bits of an undisturbed life.
@@ -10,7 +10,8 @@ import sys
 from ctypes import CDLL, c_long
 
 from fmpy import read_model_description
-from support.driver import ERROR, FMU2Wheel, Message
+
+from wheelfmu.fmu.driver import ERROR, FMU2Wheel, Message
 
 number, first, last = (c_long.in_dll(CDLL(None), name) for name in ("number", "first_failing", "last_failing"))
 NEVER = 2**62

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from support.driver import ERROR, OK
-from support.paths import ROOT
+
+from wheelfmu.fmu.driver import ERROR, OK
 
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
 # failure of one it makes (docs/decisions/package.md), so its methods are not played with.
@@ -27,8 +27,8 @@ def hook(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_no_failed_allocation_crashes_goes_unlogged_or_changes_a_later_bit(hook: Path, fmu: str, scene: str) -> None:
     preloaded = f"{hook}:{os.environ.get('LD_PRELOAD', '')}".rstrip(":")
     options = f"{os.environ.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"
-    environment = os.environ | {"LD_PRELOAD": preloaded, "ASAN_OPTIONS": options, "PYTHONPATH": str(ROOT / "tests")}
-    words = [sys.executable, "-m", "robustness.short_memory", fmu, *map(str, SCENES[scene])]
+    environment = os.environ | {"LD_PRELOAD": preloaded, "ASAN_OPTIONS": options}
+    words = [sys.executable, Path(__file__).with_name("short_memory.py"), fmu, *map(str, SCENES[scene])]
     done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=1800, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert int(done.stdout) >= 3  # the instance; a state; the state that bytes become

@@ -8,9 +8,10 @@ from time import process_time
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
-from support.scenes import FORCED
-from support.schedule import play
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
+from wheelfmu.truth.scenes import FORCED
+from wheelfmu.truth.schedule import play
 
 SOON = 5.0  # s of computing, many times what is needed: a scene that chatters takes for ever
 RISE = [(0.0, {"F_Z": (0.0, 4000.0)}), (0.1, {"F_Z": (400.0, -4000.0)}), (0.2, {"F_Z": (0.0,)})]

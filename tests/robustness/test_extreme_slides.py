@@ -10,13 +10,13 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import DISCARD, ERROR, OK
-from support.motion import Library, Run
-from support.motion import run as attempt
-from support.schedule import play
-from support.sliding import random_slide
 
-from .sweep import similar
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.motion import run as attempt
+from wheelfmu.truth.schedule import play
+from wheelfmu.truth.sliding import random_slide
+from wheelfmu.truth.sweep import similar
 
 TOLERANCE = 1e-8
 THROWN = {"slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0}

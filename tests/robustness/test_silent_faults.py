@@ -5,10 +5,11 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
-from support.closed_forms import rolling_inertia
-from support.driver import ERROR, OK
-from support.scenes import PAPER
-from support.schedule import play
+
+from wheelfmu.fmu.driver import ERROR, OK
+from wheelfmu.truth.closed_forms import rolling_inertia
+from wheelfmu.truth.scenes import PAPER
+from wheelfmu.truth.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g
 PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}

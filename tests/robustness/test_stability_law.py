@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
-from reference.modes import rolling
-from reference.motion import initial_state
-from robustness.judges import FRICTION, TIMES, error_against, law_bound
 from scipy.integrate import solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.driver import OK, Values
-from support.motion import Library, Run, run
-from support.scenes import Scene
+
+from wheelfmu.fmu.driver import OK, Values
+from wheelfmu.truth.judges import FRICTION, TIMES, error_against, law_bound
+from wheelfmu.truth.motion import Library, Run, run
+from wheelfmu.truth.reference.modes import rolling
+from wheelfmu.truth.reference.motion import initial_state
+from wheelfmu.truth.scenes import Scene
 
 PLACE = [7, 8]  # X_O and Y_O in the state of the reference
 

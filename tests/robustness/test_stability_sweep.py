@@ -8,11 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from robustness import judges
-from robustness.judges import judge, judge_case
-from robustness.sweep import Case, Expectation, sweep
 from support.bounds import beyond, within
-from support.motion import Library, run
+
+from wheelfmu.truth import judges
+from wheelfmu.truth.judges import judge, judge_case
+from wheelfmu.truth.motion import Library, run
+from wheelfmu.truth.sweep import Case, Expectation, sweep
 
 SLOW = ("friction", "omega_z = 0")  # with the reference and dense outputs: a second each
 CASES = {str(case): case for case in sweep()}

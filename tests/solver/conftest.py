@@ -4,7 +4,8 @@ import ctypes
 from functools import partial
 
 import pytest
-from support.paths import probe
+
+from wheelfmu.fmu.paths import probe
 
 from . import solving
 

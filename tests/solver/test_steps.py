@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
-from support.paths import ROOT
+
+from wheelfmu.fmu.paths import ROOT
 
 from .solving import EVENT, FAILED, harmonic
 

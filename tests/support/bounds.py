@@ -5,12 +5,10 @@ multiple of EPSILON times the size of the terms that are rounded: 64 * EPSILON i
 size one, and needs no further reason.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-Errors = dict[str, float]  # by variable
+from numpy.typing import ArrayLike
 
 EPSILON = float(np.finfo(float).eps)  # the relative distance of neighbouring doubles, 2.2e-16
 
@@ -39,13 +37,3 @@ def relative_error(found: ArrayLike, expected: ArrayLike) -> float:
     """The largest difference over the size of what is expected there; 0 where both are zero."""
     difference, size = np.abs(np.subtract(found, expected)), np.abs(expected)
     return float(np.max(np.where(difference == 0, 0.0, difference / np.where(size == 0, np.finfo(float).tiny, size))))
-
-
-def range_errors(found: Mapping[str, NDArray], expected: Mapping[str, NDArray], names: Iterable[str]) -> Errors:
-    """The largest error of each column, relative to its range."""
-    return {name: float(np.abs(found[name] - expected[name]).max() / np.ptp(expected[name])) for name in names}
-
-
-def range_error(found: Mapping[str, NDArray], expected: Mapping[str, NDArray], names: Iterable[str]) -> float:
-    """The largest of them."""
-    return max(range_errors(found, expected, names).values())

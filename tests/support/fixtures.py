@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from hypothesis import HealthCheck, settings
-from reference.tables import read_table
-from support.driver import FMU2Wheel
-from support.motion import Library
-from support.paths import ROOT, build_folder
+
+from wheelfmu.fmu.driver import FMU2Wheel
+from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.reference.tables import read_table
 
 # hypothesis: the same examples in every run.
 UNCHECKED = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
@@ -21,12 +22,19 @@ settings.register_profile("same", derandomize=True, deadline=None, database=None
 settings.load_profile("same")
 
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
+COMPONENTS = ("diagrams", "examples", "page", "publishing", "release", "studies", "vehicles")  # not the core
+
+
+def component(path: Path) -> str:
+    """The folder of a component's tests; none for the core's."""
+    folder = path.relative_to(ROOT).parts[1]
+    return folder if folder in COMPONENTS else ""
 
 
 @pytest.fixture(autouse=True)
 def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
     """A fault that takes memory without end fails its test, not the machine. (Browsers and sanitizers reserve more.)"""
-    if request.path.relative_to(ROOT).parts[0] != "tests" or "LD_PRELOAD" in os.environ:
+    if component(request.path) or "LD_PRELOAD" in os.environ:
         yield
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
@@ -51,10 +59,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """With --dist loadgroup the tests of a folder beside tests/ share a process, and with it a browser or a cluster."""
-    folder = item.path.relative_to(ROOT).parent
-    if folder.parts[0] != "tests":
-        item.add_marker(pytest.mark.xdist_group(str(folder)))
+    """With --dist loadgroup the tests of a component share a process, and with it a browser or a cluster."""
+    if name := component(item.path):
+        item.add_marker(pytest.mark.xdist_group(name))
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

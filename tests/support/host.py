@@ -9,7 +9,7 @@ from collections.abc import Callable
 from copy import copy
 from typing import Any
 
-from .driver import FMU2Wheel
+from wheelfmu.fmu.driver import FMU2Wheel
 
 LIBM = ctypes.CDLL("libm.so.6")
 LIBM.fdim.restype = ctypes.c_double

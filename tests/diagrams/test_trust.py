@@ -1,0 +1,135 @@
+"""The error that a run states of itself: it is the true one, and where it means nothing the line says so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from support.bounds import beyond, relative_error, within
+
+from wheelfmu.diagrams import races
+from wheelfmu.fmu.paths import build_folder
+from wheelfmu.fmu.trust import DEFAULT, HEADLINE, ROUNDING, TIGHTEST, Motion, Wheel, differences, trust
+from wheelfmu.truth import sliding
+from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.scenes import SCENES, Scene
+
+WORDS = {"regularized": "2", "True": "true", "False": "false"}
+NAMES = ("free", "friction", "general inertia", "fast rolling", "near flat", "past upright")
+JUDGED = {name: SCENES[name] for name in NAMES}
+JUDGED["stiff"] = Scene({"s": 0.03, "friction_law": "regularized", "omega_s": 1e-3}, 2.0)
+JUDGED["sliding"] = Scene(sliding.ROAD, 3.0)
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Wheel]:
+    yield Wheel(build_folder() / "wheel.fmu", str(tmp_path_factory.mktemp("wheel")))
+
+
+def values_of(scene: Scene) -> dict[str, str]:
+    """As ./scripts/run gives them."""
+    return {name: WORDS.get(str(value), str(value)) for name, value in scene.start.items()}
+
+
+@pytest.mark.parametrize("scene", JUDGED.values(), ids=JUDGED)
+def test_the_estimated_error_is_the_true_one(wheel: Wheel, scene: Scene) -> None:
+    """Beside the reference; partner: of a run ten times as exact the error is another."""
+    given, times = values_of(scene), np.linspace(0, scene.duration, 51)
+    solved = scene.solved(times, rtol=1e-13)
+    exact = np.column_stack([solved[name] for name in HEADLINE])
+    run, other, truth = (wheel.motion(given, times, tolerance) for tolerance in (DEFAULT, 1e-5, TIGHTEST))
+    estimated, true = (differences(run.rows, rows).max() for rows in (truth.rows, exact))
+    beyond(true, ROUNDING, "true error / range")
+    within(relative_error(estimated, true), 0.3, "estimated error, relative")
+    beyond(differences(other.rows, truth.rows).max() / true, 2, "error of a looser run over the true one")
+
+
+def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
+    """Upright under the regularized law: sinh(omega_z / omega_s) decays as exp(-s m g t / ((J_z + m R^2) omega_s))."""
+    start = {"s": 0.03, "friction_law": "regularized", "omega_s": 0.1, "theta_start": np.pi / 2, "guided": True}
+    times, decay = np.linspace(0, 4, 51), 0.03 * 20 * 9.81 / (1.8 + 20 * 0.35**2) / 0.1  # 1/s
+    exact = 0.1 * np.arcsinh(np.sinh(-2 / 0.1) * np.exp(-decay * times))
+    run, truth = (wheel.motion(values_of(Scene(start, 4.0)), times, tolerance) for tolerance in (1e-5, TIGHTEST))
+    estimated, true = (np.abs(run.rows[:, 2] - spin).max() for spin in (truth.rows[:, 2], exact))
+    beyond(true, ROUNDING * np.ptp(exact), "true error, rad/s")
+    within(relative_error(estimated, true), 1e-6, "estimated error, relative")
+
+
+def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
+    want = read_table("paper_friction_events")["t"][1:]
+    run, truth = (wheel.motion({"s": "0.03"}, np.linspace(0, 10, 1001), t, 1) for t in (1e-6, TIGHTEST))
+    found = trust(run, truth)
+    true = np.abs(np.array([t for t, _ in run.events]) - want).max()
+    assert found.counts == (37, 37)
+    within(relative_error(found.shift, true), 3e-3, "estimated shift, relative")
+    assert "37 transitions, shifted by up to" in found.said("A") and "computing time" in found.said("A")
+    few = run._replace(events=run.events[:-1])
+    assert "36 transitions, 37 at the tightest tolerance" in trust(few, truth).said("A")
+
+
+WET = {"mu_max": "0.5", "mu_slide": "0.4"}
+LOCKED = {"guided": "true", "theta_start": "1.5707963", "phi_dot_start": "-10", "M_brake": "400"}
+COUNTED = {
+    "friction": ({"s": "0.03"}, 37, "37 transitions, "),
+    "slides at once, locks, stands": (LOCKED | WET, 3, "3 transitions, "),
+    "lies flat": ({"phi_dot_start": "0"}, 0, "; the end, "),
+    "slides, lies flat": (WET | {"phi_dot_start": "0"}, 1, "; 1 transition and the end, "),
+}
+
+
+@pytest.mark.parametrize(("start", "count", "words"), COUNTED.values(), ids=COUNTED)
+def test_the_transitions_of_the_line_are_those_that_the_wheel_counts(wheel: Wheel, start, count, words) -> None:
+    """n_events, which the captions have; the end is none."""
+    times = np.linspace(0, 10, 1001)
+    found = trust(*(wheel.motion(start, times, tolerance) for tolerance in (DEFAULT, TIGHTEST)))
+    table = simulate_fmu(str(build_folder() / "wheel.fmu"), stop_time=10, output=["n_events"], start_values=start)
+    assert found.counts[0] == table["n_events"][-1] == count and words in found.said("A")
+
+
+def test_a_warning_is_no_event(wheel: Wheel) -> None:
+    """Partner: the wheel gives one, with the instant of a look at it, which depends on the step."""
+    given = {"m": "12", "J_x": "0.559", "J_y": "0.559", "J_z": "1.1", "slope": "0.12", "M_brake": "20"}
+    wheel.begin(given, DEFAULT, logging=True)
+    wheel.fmu.doStep(0.0, 1.0)
+    assert any("mu_required" in text for _, text in wheel.log)
+    wheel.end()
+    run = wheel.motion(given, np.linspace(0, 1, 101), DEFAULT)
+    assert run.events and not any("mu_required" in words for _, words in run.events)
+
+
+def test_an_upright_start_and_runs_that_part_are_named_with_the_instant_up_to_which_digits_hold(wheel: Wheel) -> None:
+    times = np.linspace(0, 20, 2001)
+    falls = [wheel.motion({"theta_start": str(np.pi / 2), "phi_dot_start": "0"}, times, t) for t in (DEFAULT, TIGHTEST)]
+    found = trust(*falls)
+    assert found.until is not None and "unstable or chaotic: three digits hold up to" in found.said("A")
+    beyond(found.until, 5, "instant up to which digits hold in the fall from 6e-17 rad, s")
+    grown = 1e-9 * np.exp(np.minimum(2 * times, 20.5))  # of two runs that part
+    swing = np.column_stack([np.sin(times + 0.1 * k) for k in range(4)])
+    truth, other = (Motion(times, rows) for rows in (swing, swing + grown[:, None]))
+    found = trust(other, truth)
+    within(abs(found.until - np.log(2e6) / 2), 0.02, "instant of a thousandth part of the range, s")
+    assert trust(Motion(times, swing + 1e-5), truth).until is None
+
+
+def test_errors_of_rounding_are_named_as_such_and_a_column_without_range_has_its_scale() -> None:
+    times, flat = np.linspace(0, 1, 11), np.column_stack([np.linspace(0, 5, 11), np.full((11, 3), 1.5)])
+    found = trust(Motion(times, flat + 1e-15), Motion(times, flat))
+    within(found.error, 2e-15, "error of rounding / range")
+    assert found.short == "error below 1e-11 of the range"
+    beyond(trust(Motion(times, flat + 1e-3), Motion(times, flat)).error, 0.9e-3, "error without range / scale")
+
+
+def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(races, "TOLERANCES", (1e-4, 1e-8))
+    times, given = np.linspace(0, 2, 201), {"s": "0.03"}
+    truth = wheel.motion(given, times, TIGHTEST)
+    found = races.measured(wheel, given, times, truth, np.ones(4))
+    races.write({"Rolling friction": found}, tmp_path)
+    header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
+    assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
+    errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}
+    assert all(errors[method, "1e-08"] < 0.1 * errors[method, "0.0001"] for method in races.METHODS)
+    assert (tmp_path / "error_time.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,94 @@
+"""Result files, pages, and a browser that looks at them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import Browser, BrowserContext, Page
+
+from wheelfmu.page import bodies
+from wheelfmu.page.__main__ import main
+from wheelfmu.page.browser import show, surroundings
+
+POSE = (*bodies.POSE, "Z_O")
+RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)
+SIZE = {"width": 900, "height": 640}  # of the window, CSS pixels
+# The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
+FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
+# Advice of the browser on how the tests look at pictures.
+NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
+# Most tests look at everything but the pixels of the scene: the calls that make the processor draw it are left out, and
+# a second has twenty frames.
+UNDRAWN = """window.undrawn = true;
+for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "generateMipmap"]) {
+  const draw = WebGL2RenderingContext.prototype[call];
+  WebGL2RenderingContext.prototype[call] = function (...all) { window.undrawn || draw.apply(this, all); };
+}
+const frame = window.requestAnimationFrame;
+window.requestAnimationFrame = (act) => setTimeout(() => frame(act), 40);"""
+# The first view of a page, at its start.
+REST = """if (page.live?.kept) page.live.keep(false);
+page.choose(0);
+page.player.set({playing: false, t: 0, speed: 1});
+page.plots.portrait.choose('phase');
+for (const [name, on] of [['follow', true], ['force', false]]) page.switches.flip(name, on);
+page.stage.controls.reset()"""
+# A vector in the road's axes as the scene shows it.
+TURN = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"
+
+
+def window_of(browser: Browser, **look: object) -> BrowserContext:
+    """A window, whose tabs share a process of the browser."""
+    window = surroundings(browser, **look)
+    window.add_init_script(UNDRAWN)
+    return window
+
+
+@contextmanager
+def opened(window: BrowserContext, path: Path, address: str = "") -> Iterator[Page]:
+    """A page that stands still at its start; afterwards its console must hold no error and no warning."""
+    page = window.new_page()
+    faults: list[str] = []
+    page.on("console", lambda message: faults.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda fault: faults.append(str(fault)))
+    yield show(page, path, address)
+    page.close()
+    faults = [line for line in faults if not any(noise in line for noise in NOISE)]
+    assert not faults, faults
+
+
+@contextmanager
+def drawn(page: Page) -> Iterator[Page]:
+    """A page whose scene is drawn."""
+    page.evaluate("window.undrawn = false; page.dress(); page.draw()")
+    yield page
+    page.evaluate("window.undrawn = true")
+
+
+def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
+    """A result file as FMPy writes it."""
+    header = ",".join(f'"{name}"' for name in columns)
+    np.savetxt(path, np.column_stack([*columns.values()]), fmt="%.17g", delimiter=",", header=header, comments="")
+    return path
+
+
+def view(*arguments: object) -> None:
+    """What ./scripts/view does, once all is set up."""
+    main("recorded", *map(str, arguments))
+
+
+def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
+    return np.array(page.evaluate("([i, name]) => [...page.wheels[i].table.columns[name]]", [wheel, name]))
+
+
+def start(page: Page, at: float = 0.0, **values: float) -> None:
+    """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
+    load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); page.live.frame(); }"
+    page.evaluate(load, [values, at])
+
+
+def do(page: Page, at: float, **values: float) -> None:
+    """These values act in the live page from the instant `at` on."""
+    act = "([t, all]) => { page.player.seek(t); for (const one of all) page.live.setNow(...one); page.live.compute(); }"
+    page.evaluate(act, [at, [*values.items()]])

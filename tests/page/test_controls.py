@@ -1,0 +1,83 @@
+"""What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
+
+import pytest
+from page.pages import opened, window_of
+from playwright.sync_api import BrowserContext
+
+CAMERA = "[...page.stage.camera.position]"
+
+
+def test_keys_move_the_time_and_switch_what_is_shown(either):
+    either.evaluate("page.player.seek(2); document.activeElement.blur()")
+    for key in ("ArrowRight", "Shift+ArrowRight"):
+        either.keyboard.press(key)
+    assert either.evaluate("page.player.t") == pytest.approx(2.55)
+    either.keyboard.press("Home")
+    assert either.evaluate("page.player.t") == 0
+    either.keyboard.press(" ")
+    either.wait_for_function("page.player.t > 0.05")
+    either.keyboard.press(" ")
+    assert not either.evaluate("page.player.playing")
+    for shown in (True, False):
+        either.keyboard.press("g")
+        assert either.evaluate("page.pose() ?? page.stage.models[0].force.visible") is shown
+
+
+def test_a_number_chooses_what_is_shown(recorded):
+    for key, names in (("3", ["free"]), ("1", ["free", "friction"])):
+        recorded.keyboard.press(key)
+        assert recorded.evaluate("page.shown.map(({name}) => name)") == names
+
+
+@pytest.mark.parametrize("by", ["mouse", "keyboard"])
+def test_the_mouse_and_arrow_keys_turn_the_view(either, by):
+    before = either.evaluate(CAMERA)
+    either.evaluate("page.player.seek(0.25)")
+    if by == "mouse":
+        either.hover("#stage", position={"x": 100, "y": 100})
+        either.mouse.down()
+        either.hover("#stage", position={"x": 220, "y": 120})
+        either.mouse.up()
+    else:
+        either.locator("#stage").focus()
+        either.keyboard.press("ArrowLeft")
+    moved = f"(before) => {CAMERA}.some((x, i) => Math.abs(x - before[i]) > 0.02)"  # it comes to rest by and by
+    either.wait_for_function(moved, arg=before)
+    assert either.evaluate("page.player.t") == 0.25
+    either.keyboard.press("r")
+
+
+TOOLTIPS = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""
+
+
+def test_every_button_has_a_tooltip_and_every_diagram_a_name(either):
+    tooltips = either.eval_on_selector_all("button, summary, input[type=range], #toggles label", TOOLTIPS)
+    assert len(tooltips) > 20 and [button for title, button in tooltips if not title] == []
+    diagrams = either.eval_on_selector_all(".plot canvas", "all => all.map((x) => x.ariaLabel)")
+    assert len(set(diagrams)) == 5 and all(len(name) > 20 for name in diagrams)  # for screen readers
+
+
+@pytest.fixture(scope="module")
+def phone(browser) -> BrowserContext:
+    """One whose browser encodes no films."""
+    found = window_of(browser, viewport={"width": 360, "height": 740}, has_touch=True, is_mobile=True)
+    found.add_init_script("delete window.VideoEncoder")
+    return found
+
+
+@pytest.mark.parametrize("kind", ["recorded", "live"])
+def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kind):
+    with opened(phone, request.getfixturevalue(f"{kind}_file")) as page:
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_function("(scheme) => document.documentElement.dataset.theme === scheme", arg=scheme)
+            assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        edges = page.evaluate("page.stage.rectangles.map(({y}) => y)")
+        assert len(set(edges)) == len(edges)  # above each other
+        scene, switches = (page.locator(place).bounding_box() for place in ("#scene", "#toggles"))
+        assert switches["y"] >= scene["y"] + scene["height"] - 2.5  # px; the switches cover no part of the scene
+        film = page.locator("#take [name=film]")
+        assert film.is_disabled() and "Firefox 130" in film.get_attribute("title")
+        page.evaluate("page.player.pause(); page.player.seek(0)")
+        page.locator("#play").tap()
+        page.wait_for_function("page.player.t > 0.05")

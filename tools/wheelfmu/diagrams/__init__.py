@@ -1,0 +1,1 @@
+"""Pictures of motions; the look of every picture of this project."""

@@ -1,0 +1,121 @@
+"""Error over run time: the look of all such races, and those of the scenes of ./scripts/run.
+
+    python -m wheelfmu.diagrams.races FOLDER [argument of ./scripts/run]...
+
+writes FOLDER/SCENE.error for both scenes: the line for the user, then the words for the captions. With error=methods it
+also writes the table and the picture error_time of all methods and tolerances.
+"""
+
+import csv
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from wheelfmu.diagrams import style
+from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
+
+LEAST = 1e-14  # of the range: what is drawn for less
+LOOKS = {  # colour, marker and line
+    "automatic": (style.BLUE, "o-"),
+    "adams": (style.GREEN, "v-"),
+    "bdf": (style.SKY, "<--"),
+    "runge_kutta": (style.ORANGE, ">:"),
+    "heyoka": (style.VERMILLION, "s-"),  # of the speed report
+    "formulation 3": (style.PURPLE, "s-."),
+}
+METHODS = {name: {"method": str(k)} for k, name in enumerate(("automatic", "adams", "bdf", "runge_kutta"), 1)}
+METHODS["formulation 3"] = {"formulation": "3"}
+TOLERANCES = tuple(10.0**-k for k in range(4, 13))
+TURNS, SLOW = 7, 0.3  # repetitions; s: what takes longer is measured once
+
+
+def curve(ax: Axes, method: str, microseconds: Sequence[float], errors: Sequence[float]) -> None:
+    """One method; automatic lies on top, half transparent, so that what it equals shows."""
+    colour, mark = LOOKS[method]
+    look = {"lw": 3.5, "alpha": 0.55, "ms": 5} if method == "automatic" else {"lw": 1, "ms": 3}
+    ax.plot(microseconds, np.clip(errors, LEAST, None), mark, color=colour, label=method, **look)
+
+
+def dress(ax: Axes, title: str, time: str = "best time") -> None:
+    """The axes of a race."""
+    ax.set(xlabel=f"{time} [µs]", ylabel="error / range", xscale="log", yscale="log", ylim=(LEAST, 3))
+    ax.set_title(title, fontsize=9, loc="left")
+    ax.grid(alpha=0.3, linewidth=0.4)
+
+
+def measured(wheel, start: dict[str, str], times: np.ndarray, truth, scales: np.ndarray) -> list[dict]:  # noqa: ANN001
+    """A row per method and tolerance, with its error or why it has none; times are medians of repetitions in turns."""
+    from wheelfmu.fmu.trust import trust
+
+    rows = []
+    for method, more in METHODS.items():
+        for tolerance in TOLERANCES:
+            found = wheel.motion(start | more, times, tolerance)
+            failed = abs(len(found.rows) - len(truth.rows)) > 1
+            error, note = (np.nan, found.message) if failed else (trust(found, truth, scales).error, "")
+            rows.append({"method": method, "tolerance": tolerance, "error": error, "note": note, "costs": []})
+    for row in (row for _ in range(TURNS) for row in rows):
+        if not row["note"] and not (row["costs"] and row["costs"][0][0] > SLOW):
+            row["costs"].append(wheel.timed(start | METHODS[row["method"]], truth.times, row["tolerance"]))
+    ours = min(empty for row in rows for _, empty in row["costs"])  # Python's share, alike for all
+    for row in rows:
+        costs = [step - ours for step, _ in row.pop("costs")]
+        row["median_us"] = 1e6 * float(np.median(costs)) if costs else np.nan
+    return rows
+
+
+def write(races: dict[str, list[dict]], folder: Path) -> None:
+    """error_time.csv and error_time.png, a panel for each scene; what failed is printed."""
+    style.use_style()
+    figure = style.figure_mm(style.PAGE, 80.0)
+    figure.set_layout_engine("constrained")
+    for ax, (label, rows) in zip(np.ravel(figure.subplots(1, len(races))), races.items(), strict=True):
+        for method in METHODS:
+            done = [row for row in rows if row["method"] == method and not row["note"]]
+            curve(ax, method, [row["median_us"] for row in done], [row["error"] for row in done])
+        dress(ax, label, "median time at tolerances 1e-4 to 1e-12")
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
+    style.save_png(figure, folder / "error_time.png")
+    with (folder / "error_time.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(names := ("scene", "method", "tolerance", "error", "median_us", "note"))
+        for label, rows in races.items():
+            for row in rows:
+                texts = {n: f"{x:.4g}" if isinstance(x, float) else x for n, x in row.items()} | {"scene": label}
+                writer.writerow(texts[name] for name in names)
+                if row["note"]:
+                    print(f"{label}, {row['method']}, tolerance {texts['tolerance']}: {row['note']}")
+
+
+def main(folder: Path, given: dict[str, str]) -> None:
+    """Both scenes of ./scripts/run."""
+    asked = given.pop("error", CHECKS["estimate"])
+    if asked == CHECKS["no"]:
+        return
+    from wheelfmu.fmu.trust import DEFAULT, REPEATS, TIGHTEST, Wheel, trust
+
+    stop, interval = (float(given.pop(name, v.start)) for name, v in RUN.items())
+    times, races = np.append(np.arange(0, stop * (1 - 1e-9), interval), stop), {}
+    r_0, r, g = (float(given.get(name, variables("parameter")[name].start)) for name in ("r_0", "r", "g"))
+    fall = np.sqrt(g / (r_0 + r))  # rad/s
+    scales = np.array([r_0 + r, 1.0, fall, fall])
+    with TemporaryDirectory() as unpacked:
+        wheel = Wheel(ROOT / "wheel.fmu", unpacked)
+        for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
+            start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
+            truth = wheel.motion(start, times, TIGHTEST)
+            if len(truth.rows) > 1:
+                found = trust(wheel.motion(start, times, DEFAULT, REPEATS), truth, scales)
+                (folder / f"{name}.error").write_text(f"{found.said(label)}\n{found.short}\n", encoding="utf-8")
+                if asked == CHECKS["methods"]:
+                    races[label] = measured(wheel, start, times, truth, scales)
+    if races:
+        write(races, folder)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), values(sys.argv[2:]))

@@ -1,0 +1,1 @@
+"""The 3D page of recorded motions and the live page."""

@@ -1,0 +1,58 @@
+"""Command line of the pages: `recorded FILE.csv...` for result files, `live WASM OUTPUT` for the wheel itself."""
+
+import argparse
+import sys
+from collections import Counter
+from dataclasses import replace
+from itertools import zip_longest
+from pathlib import Path
+
+from wheelfmu.fmu.outputs import check
+from wheelfmu.fmu.values import Fault
+from wheelfmu.page import document, options
+from wheelfmu.page.bodies import Body, ViewError, read_bodies
+
+PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
+
+
+def main(kind: str, *words: str) -> None:
+    """Write a page; a fault of the input ends the program with one sentence."""
+    try:
+        output, size = live(*words) if kind == "live" else recorded(options.arguments(words))
+    except (ViewError, Fault) as fault:
+        print(f"view: {fault}", file=sys.stderr)
+        sys.exit(2)
+    print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
+
+
+def live(module: str, page: str, overwrite: str = "") -> tuple[Path, int]:
+    wasm, output = Path(module), Path(page)
+    check([output], [wasm], options.is_page, overwrite=overwrite == "--overwrite")
+    return output, document.write(output, "The wheel, live", [], wasm=wasm)
+
+
+def recorded(given: argparse.Namespace) -> tuple[Path, int]:
+    parameters = {name: getattr(given, name) for name in options.GIVEN if getattr(given, name) is not None}
+    bodies = [body for path in given.files for body in read_bodies(path, parameters, given.box)]
+    bodies, every = document.thinned(named(bodies, given.labels))
+    if every > 1:
+        print(f"One row in {every} is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
+    return given.output, document.write(given.output, given.title, bodies, len(given.files))
+
+
+def named(bodies: list[Body], labels: list[str]) -> list[Body]:
+    """Bodies with distinct names, the second `wheel` as `wheel 2`; called by label, place on a car, or name."""
+    if len(labels) > len(bodies):
+        count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
+        raise ViewError(f"--labels names {len(labels)} bodies, but the files hold {count}.")
+    seen: Counter[str] = Counter()
+    found = []
+    for body, label in zip_longest(bodies, labels):
+        seen[body.name] += 1
+        name = body.name if seen[body.name] == 1 else f"{body.name} {seen[body.name]}"
+        found.append(replace(body, name=name, label=label or PLACES.get(name.removeprefix("wheel_"), name)))
+    return found
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,70 @@
+// The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of the bodies
+// (examples/bodies.json), which follow from mass and radii, and whether any mass within the wheel's outline has the
+// given ones, as in tools/wheelfmu/fmu/values.py; the critical spin. SI.
+import {live} from '#dom';
+
+const HUB = 0.1;        // of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube
+const ROUNDING = 1e-9;  // of a moment: an excess that is no fault
+
+/** {name: {title, source, J_x, J_z}}: the moments over m, as parts of the squares of lengths. */
+export const bodies = live?.bodies ?? {};
+export const MOMENTS = ['J_x', 'J_y', 'J_z'];
+
+/** {J_x, J_y, J_z} of a body. */
+export function momentsOf(name, {m, r_0, r}) {
+  const lengths = {r_0, r, R: r_0 + r};
+  const [J_x, J_z] = ['J_x', 'J_z'].map((moment) => {
+    const terms = Object.entries(bodies[name][moment]).map(([length, part]) => {
+      const [above, below = 1] = part.split('/').map(Number);
+      return above / below * (lengths[length] * lengths[length]);
+    });
+    return m * terms.reduce((sum, term) => sum + term, 0);
+  });
+  return {J_x, J_y: J_x, J_z};
+}
+
+const short = (value) => String(Number(value.toPrecision(4)));
+
+/** One sentence if no mass within the outline, the convex hull of the torus, has these moments; else null. */
+export function doubtOf({m, r_0, r, J_x, J_y, J_z}) {
+  const across = (J_x + J_y - J_z) / 2;  // m times the mean square of the distance from the wheel's plane
+  const slack = ROUNDING * (J_x + J_y + J_z);
+  const [widest, width] = [m * (r_0 + r) ** 2, Math.max(r, HUB * (r_0 + r))];
+  const [about, beside] = [`J_z = ${short(J_z)} kg m² is more than`, `(J_x + J_y − J_z)/2 = ${short(across)} kg m²`];
+  if (J_z > widest + slack)
+    return `${about} m (r_0 + r)² = ${short(widest)} kg m²: no mass within the wheel's radius has this moment.`;
+  if (across > m * width ** 2 + slack) {
+    const limit = width === r ? 'm r²' : `m (${HUB} (r_0 + r))²`;
+    return `${beside} is more than ${limit} = ${
+        short(m * width ** 2)} kg m²: so far from its plane the wheel has no mass.`;
+  }
+  const most = m * (r_0 + Math.sqrt(Math.max(r * r - across / m, 0))) ** 2;
+  if (across <= m * r * r && J_z > most + slack)
+    return `${about} ${short(most)} kg m²: no mass within the wheel's outline has it together with ${beside}.`;
+  return null;
+}
+
+/**
+ * |omega_z| above which upright straight rolling is stable, rad/s: a small lean a turns the wheel at
+ * omega_2 = (J_z / J_x) omega_z a, and (J_x + m rho^2) a'' = m g r_0 a - (J_z + m rho^2) omega_2 omega_z, rho = r_0 +
+ * r.
+ */
+export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
+  return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
+}
+
+/**
+ * The gyroscopic moment -Omega x H of a wheel with J_x = J_y along the carrier axes e1 and e2, N m; at(name): a
+ * variable at one instant.
+ */
+export function gyroscope({J_x, J_z}, at) {
+  const [theta, theta_dot, psi_dot, omega_z] = ['theta', 'theta_dot', 'psi_dot', 'omega_z'].map(at);
+  const excess = J_z * omega_z - J_x * psi_dot * Math.cos(theta);  // kg m2/s
+  return [-excess * psi_dot * Math.sin(theta), excess * theta_dot];
+}
+
+/** The ground's moment about e2 through the centre, N m: -eta lambda_x, eta = r cos theta. */
+export function groundMoment({r}, at) {
+  const [theta, psi, lambda_1, lambda_2] = ['theta', 'psi', 'lambda_1', 'lambda_2'].map(at);
+  return -r * Math.cos(theta) * (lambda_1 * Math.cos(psi) + lambda_2 * Math.sin(psi));
+}

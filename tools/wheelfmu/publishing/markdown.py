@@ -1,0 +1,78 @@
+"""Numbers and tables as they stand in every document, and pages made from templates."""
+
+from __future__ import annotations
+
+import csv
+import re
+import subprocess
+from contextlib import suppress
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from tabulate import tabulate
+
+from wheelfmu.fmu.paths import ROOT
+
+TEMPLATES = tuple(ROOT / "tools" / "wheelfmu" / part / "templates" for part in ("publishing", "reports"))
+
+
+def said(*command: str) -> str:
+    """The first line that a program prints; nothing where it fails or is missing."""
+    with suppress(OSError):
+        found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+        return (found.stdout.strip().splitlines() or [""])[0] if not found.returncode else ""
+    return ""
+
+
+def pages() -> list[Path]:
+    """Every document under version control, and new ones."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md", "*.html"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in sorted(listed.stdout.split("\0")) if name and (ROOT / name).is_file()]
+
+
+def number(value: object) -> str:
+    """Short text of a value: 3 digits of a float, or 2 and a plain exponent; integers and text as they are."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return "" if value is None else str(value)
+    if not isfinite(value):
+        return str(value)
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def table(frame: Any) -> str:
+    """Of a pandas table, the first column to the left, the others to the right; unknown values stay empty."""
+    if frame.empty:
+        return "None."
+    cells = frame.convert_dtypes().astype(object)
+    texts = [[number(cell).replace("|", "\\|") for cell in row] for row in cells.where(cells.notna(), None).to_numpy()]
+    sides = ("left", *["right"] * (frame.shape[1] - 1))
+    return tabulate(texts, list(frame.columns), "pipe", disable_numparse=True, colalign=sides)
+
+
+# A figure in prose: a number, and behind it its report and name as a comment.
+FIGURE = re.compile(r"[-−]?\d[\d.]*(?:e-?\d+)?<!--(\w+\.\w+)-->")
+
+
+def with_figures(text: str) -> str:
+    """The text with every figure in its prose as docs/results/data has it; KeyError: there is no such figure."""
+    rows = csv.DictReader((ROOT / "docs" / "results" / "data" / "figures.csv").open(encoding="utf-8"))
+    known = {f"{row['report']}.{row['figure']}": number(float(row["measured"])) for row in rows}
+    return FIGURE.sub(lambda found: f"{re.sub('^-', '−', known[found[1]])}<!--{found[1]}-->", text)
+
+
+def page(template: str, **values: object) -> str:
+    """A page out of a template; an unknown name is an error."""
+    loader = FileSystemLoader(TEMPLATES)
+    pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    pages.filters |= {"table": table, "number": number}
+    return re.sub(r"\n{3,}", "\n\n", pages.get_template(template).render(**values)).strip() + "\n"

@@ -1,0 +1,46 @@
+"""Runs examples/wheel.ipynb and keeps the outputs of its cells: text and pictures, without run times and progress bars.
+
+python -m publishing.notebook: writes the notebook. The site shows it, and a test runs it again and compares.
+"""
+
+from __future__ import annotations
+
+import nbformat
+from nbclient import NotebookClient
+
+from wheelfmu.publishing.markdown import ROOT
+
+NOTEBOOK = ROOT / "examples" / "wheel.ipynb"
+KEPT = ("text/plain", "image/png")
+
+
+def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat.NotebookNode:
+    """The notebook with fresh outputs; fmu, results: in the place of ../wheel.fmu and ../results."""
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    cells = [(cell, cell.source) for cell in notebook.cells]
+    for cell, source in cells:
+        cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results)
+    place = {"metadata": {"path": NOTEBOOK.parent}}
+    # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
+    NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place).execute()
+    for number, (cell, source) in enumerate(cells):
+        cell.source, cell.metadata, cell.id = source, {}, f"cell-{number}"
+        if cell.cell_type == "code":
+            cell.outputs = [strip(output) for output in cell.outputs if output.get("name") != "stderr"]
+    notebook.metadata.pop("widgets", None)
+    notebook.metadata["language_info"] = {"name": "python"}
+    return notebook
+
+
+def strip(output: nbformat.NotebookNode) -> nbformat.NotebookNode:
+    """Words and pictures alone; where there is a picture, it is enough."""
+    if "data" in output:
+        kinds = [kind for kind in KEPT if kind in output.data]
+        output.data = {kind: output.data[kind] for kind in kinds[-1:]}
+        output.metadata = {}
+    return output
+
+
+if __name__ == "__main__":
+    nbformat.write(executed(), NOTEBOOK)
+    print(f"Ran {NOTEBOOK.relative_to(ROOT)}.")

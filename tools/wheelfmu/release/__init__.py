@@ -1,0 +1,1 @@
+"""One FMU with the libraries of all platforms, and its release."""

@@ -1,0 +1,62 @@
+"""The project's sources compiled for another platform by PyPI's ziglang: clang, every target's libc, and the linkers.
+
+python -m wheelfmu.release.compiling FOLDER TARGET: WebAssembly in a build folder, wheel_page (the module of the live
+page) or wheel_driver (the release's scenes). It prints the file, which is made anew only where a source has changed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+from wheelfmu.publishing.markdown import ROOT
+
+WASM = "wasm32-wasi"
+
+
+def compiler() -> Path:
+    """The folder of ziglang, which has the licences too."""
+    return Path(str(files("ziglang")))
+
+
+def build(
+    out: Path, platform: str, target: str, sources: Path = ROOT, zig: Path | None = None, sundials: str = ""
+) -> None:
+    """One CMake target for one platform of zig's; sundials: its source tree, fetched if it is not given."""
+    cache, program = out / "CMakeCache.txt", (zig or compiler()) / "zig"
+    # CMake's cache holds absolute paths: where the checkout or the compiler has another one, the folder is built anew.
+    paths = (f"CMAKE_HOME_DIRECTORY:INTERNAL={sources}\n", f"={program}\n")
+    if cache.exists() and not all(path in cache.read_text(encoding="utf-8") for path in paths):
+        shutil.rmtree(out)
+    options = {
+        "CMAKE_BUILD_TYPE": "Release",
+        "CMAKE_UNITY_BUILD": platform == WASM,
+        "CMAKE_TOOLCHAIN_FILE": sources / "cmake" / "zig.cmake",
+        "CMAKE_MODULE_LINKER_FLAGS_RELEASE": "-s",
+        "CMAKE_SHARED_LINKER_FLAGS_RELEASE": "-s",
+        "Python3_EXECUTABLE": sys.executable,
+        "WHEEL_ZIG": program,
+        "WHEEL_ZIG_TARGET": platform,
+        "WHEEL_SUNDIALS_SOURCE": sundials or os.environ.get("WHEEL_SUNDIALS_SOURCE", ""),
+    }
+    given = [f"-D{name}={value}" for name, value in options.items()]
+    out.mkdir(parents=True, exist_ok=True)
+    log = out / "build.log"
+    with log.open("w", encoding="utf-8") as file:
+        for command in (
+            ["cmake", "-Wno-dev", "-S", sources, "-B", out, *given],
+            ["cmake", "--build", out, "--target", target, "--parallel", str(os.cpu_count())],
+        ):
+            if subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode:
+                print(*log.read_text(encoding="utf-8").splitlines()[-40:], sep="\n", file=sys.stderr)
+                raise SystemExit(f"The build for {platform} failed; the whole log is {log}.")
+
+
+if __name__ == "__main__":
+    folder, made = ROOT / sys.argv[1], sys.argv[2]
+    build(folder, WASM, made)
+    print(folder / f"{made}.wasm")

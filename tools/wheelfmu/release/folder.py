@@ -1,0 +1,74 @@
+"""The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from wheelfmu.publishing.markdown import ROOT
+
+VERSIONS = {
+    "CMakeLists.txt": r"project\(wheel VERSION (\S+)",
+    "modelDescription.xml": r'\bversion="([^"]+)" license',
+    "CITATION.cff": r"^version: (\S+)",
+}
+DRAFT = "Unreleased"
+
+
+def version(root: Path = ROOT) -> str:
+    """The version that all files name; SystemExit with one sentence if they differ."""
+    texts = {name: (root / name).read_text(encoding="utf-8") for name in VERSIONS}
+    found = {name: "".join(re.findall(VERSIONS[name], text, re.MULTILINE) or ["none"]) for name, text in texts.items()}
+    if len(set(found.values())) > 1:
+        named = ", ".join(f"{name} names {value}" for name, value in found.items())
+        raise SystemExit(f"The versions differ: {named}.")
+    return next(iter(found.values()))
+
+
+def notes(changelog: str, number: str) -> tuple[str, bool]:
+    """The newest section of the changelog, and whether it still is a draft; SystemExit if it is of another version."""
+    title, _, rest = changelog.partition("\n## ")[2].partition("\n")
+    text = rest.split("\n## ")[0].strip()
+    if re.split(r"[ ,]", title)[:1] not in ([number], [DRAFT]):
+        raise SystemExit(f"CHANGELOG.md opens with a section {title}, not with one of version {number}.")
+    return f"# wheel.fmu {number}\n\n{text}\n", title.startswith(DRAFT)
+
+
+def pack(site: Path, archive: Path) -> None:
+    """The site in one file; the same content gives the same bytes."""
+    plain = ["--sort=name", "--mtime=@0", "--owner=0", "--group=0", "--numeric-owner", "--mode=u=rwX,go=rX"]
+    folder: list[str | Path] = ["--transform=s,^[.],wheel-site,", "-C", site, "."]
+    subprocess.run(["tar", "--format=gnu", *plain, "-I", "gzip -9n", "-cf", archive, *folder], check=True)
+
+
+def write(out: Path, fmu: Path, site: Path, text: str) -> None:
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    shutil.copyfile(fmu, out / "wheel.fmu")
+    pack(site, out / "wheel-site.tar.gz")
+    (out / "NOTES.md").write_text(text, encoding="utf-8")
+    names = sorted(path.name for path in out.iterdir())
+    sums = subprocess.check_output(["sha256sum", *names], cwd=out)
+    (out / "SHA256SUMS").write_bytes(sums)
+
+
+def described() -> tuple[str, str]:
+    """The version and its notes."""
+    number = version()
+    text, draft = notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), number)
+    if draft:
+        print(f"CHANGELOG.md has a section {DRAFT}: give it the version and the date before you tag.", file=sys.stderr)
+    return number, text
+
+
+def publish(fmu: Path, site: Path) -> None:
+    number, text = described()
+    out = (ROOT / "build" / f"wheel-{number}").relative_to(Path.cwd())
+    write(out, fmu, site, text)
+    print(f"{out} holds {', '.join(sorted(path.name for path in out.iterdir()))}. To tag it:")
+    print(f"  git tag -a v{number} -F {out / 'NOTES.md'} --cleanup=whitespace")
+    print(f"  git push origin v{number}")
+    print(".github/workflows/release.yml attaches the same files, built anew; elsewhere attach those of the folder.")

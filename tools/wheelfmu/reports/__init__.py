@@ -1,0 +1,1 @@
+"""Measured reports: tables, figures with bounds, pages."""

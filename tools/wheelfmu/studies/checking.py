@@ -1,0 +1,52 @@
+"""Whether the results of a study can be trusted: some of its wheels again at the FMU's tightest tolerance."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import xarray as xr
+from fmpy import extract
+
+from wheelfmu.fmu.trust import DIGITS, HEADLINE, TIGHTEST, differences
+
+from .dataset import axes_of, points
+from .plan import Study
+from .worker import Instance, pack, run_block
+
+ERROR = "Largest difference of a headline output from the run at the tightest tolerance, over its range"
+SHIFT = "By how much the run ends later than at the tightest tolerance"
+
+
+def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int) -> tuple[xr.Dataset, str]:
+    """The results with two more columns, of `count` wheels drawn at random, and a sentence for the summary."""
+    axes = axes_of(study)
+    shape, every = tuple(axes.sizes.values()), points(axes, (slice(None),) * len(axes.sizes))
+    drawn = np.sort(np.random.default_rng(0).permutation(math.prod(shape))[:count])
+    few = {name: np.broadcast_to(values, shape).ravel()[drawn] for name, values in every.items()}
+    common = replace(study, grid={}, list={}, measures={}, history=HEADLINE)
+    with TemporaryDirectory() as folder:
+        instance = Instance(extract(str(pack(fmu, Path(folder) / "wheel.zip")), folder))
+        runs = [run_block(instance, replace(common, tolerance=t), few) for t in (study.tolerance, TIGHTEST)]
+    error, shift = np.full((2, math.prod(shape)), np.nan)
+    for k, wheel in enumerate(drawn):
+        rows, truth = (np.column_stack([run[name][k] for name in HEADLINE]) for run in runs)
+        there = np.isfinite(rows[:, 0] + truth[:, 0])  # until the earlier end of both
+        if there.any():
+            error[wheel] = differences(rows[there], truth[there]).max()
+            shift[wheel] = runs[0]["end_time"][k] - runs[1]["end_time"][k]
+    columns = {"check_error": (error, "1", ERROR), "check_shift": (shift, "s", SHIFT)}
+    about = {
+        name: ([*axes.sizes], values.reshape(shape), {"units": unit, "description": text})
+        for name, (values, unit, text) in columns.items()
+    }
+    xr.Dataset(about, attrs=results.attrs).to_zarr(place, mode="a", consolidated=False, zarr_format=3)
+    found, late = error[np.isfinite(error)], np.abs(shift[np.isfinite(shift)])
+    if not found.size:
+        return results.assign(about), f"None of the {len(drawn)} wheels to be checked runs."
+    said = f"Of {found.size} wheels run again at the tightest tolerance the error is at most {found.max():.1e} of the"
+    shifted = f"shifts by up to {late.max():.1e} s" if late.any() else "is not shifted"
+    said += f" range (median {np.median(found):.1e}); the end of a run {shifted}."
+    parted = int((found > DIGITS).sum())
+    return results.assign(about), said + f" In {parted} of them both runs part: unstable or chaotic." * bool(parted)

@@ -1,0 +1,1 @@
+"""What the FMU is judged by: own references, closed forms, scenes, errors."""

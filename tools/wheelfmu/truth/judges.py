@@ -1,0 +1,209 @@
+"""A case at a tolerance: every judge's error, and whether what happened was expected.
+
+A judge compares a run with what must hold, and returns one error, 0 for the exact motion.
+
+energy       change of the energy plus the friction's work, over the largest energy
+integrals    Chaplygin's two linear integrals (closed_forms.py), over the largest rate
+reference    headline outputs against truth/reference, over the range of each
+still        the wheel keeps its lean: |theta - theta_start|, rad
+uniform      without weight: all rates stay as they are, over the largest
+fixed        omega_z is exactly zero wherever friction holds it, rad/s
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from wheelfmu.fmu.driver import DISCARD, HEADLINE, WARNING, Values
+from wheelfmu.truth.closed_forms import linear_integrals
+from wheelfmu.truth.errors import range_error
+from wheelfmu.truth.motion import Library, Run, run
+from wheelfmu.truth.reference import solve
+
+from .sweep import Case
+
+
+def friction_work(run: Run, s: float) -> np.ndarray:
+    """Work taken out by rolling friction since the start, J: the integral of s N |omega_z|.
+
+    Between events Euler-Maclaurin (values and slopes, fourth order); at an event the power is zero, so the pieces next
+    to it are parabolas. Slips that begin and end within one interval are left out.
+    """
+    t, sign = run["t"], run["friction_mode"]
+    power = s * run["lambda_3"] * run["omega_z"] * sign
+    slope = s * sign * (run["lambda_3_dot"] * run["omega_z"] + run["lambda_3"] * run["omega_z_dot"])
+    h = np.diff(t)
+    pieces = h / 2 * (power[:-1] + power[1:]) + h**2 / 12 * (slope[:-1] - slope[1:])
+    events = np.array([instant for instant, _ in run.events])
+    for i in np.flatnonzero(np.diff(np.searchsorted(events, t, "right"))):
+        inside = events[(events > t[i]) & (events <= t[i + 1])]
+        before, after = inside[0] - t[i], t[i + 1] - inside[-1]
+        pieces[i] = before * power[i] * 2 / 3 + before**2 * slope[i] / 6
+        pieces[i] += after * power[i + 1] * 2 / 3 - after**2 * slope[i + 1] / 6
+    return np.concatenate([[0.0], np.cumsum(pieces)])
+
+
+def energy(case: Case, run: Run) -> float:
+    lost = friction_work(run, case.wheel.s) if case.wheel.s > 0 else 0.0
+    size = np.abs(run["E"]).max()
+    return float(np.abs(run["E"] - run["E"][0] + lost).max() / (size or 1.0))
+
+
+def work_uncertainty(case: Case, run: Run) -> float:
+    """How well friction_work knows itself, over the energy: every second sample against all."""
+    if case.wheel.s == 0:
+        return 0.0
+    every_second = Run({name: column[::2] for name, column in run.columns.items()}, run.messages, 0, None, 0.0)
+    coarse, fine = friction_work(every_second, case.wheel.s), friction_work(run, case.wheel.s)[::2]
+    return float(np.abs(coarse - fine).max() / np.abs(run["E"]).max())
+
+
+def integrals(case: Case, run: Run) -> float:
+    omega_2 = run["psi_dot"] * np.sin(run["theta"])
+    kept = np.sin(run["theta"]) > 1e-6  # an ending flat is left to its own instant
+    order = np.argsort(-np.sin(run["theta"][kept]), kind="stable")  # carried to the highest point: well conditioned
+    columns = (column[kept][order] for column in (run["theta"], omega_2, run["omega_z"]))
+    constants = linear_integrals(case.wheel, *columns)
+    size = max(np.abs(omega_2).max(), np.abs(run["omega_z"]).max(), np.abs(run["theta_dot"]).max())
+    start = constants[np.flatnonzero(order == 0)[0]]
+    return float(np.abs(constants - start).max() / (size or 1.0))
+
+
+def reference_rows(case: Case) -> np.ndarray:
+    """Rows of the case's times at which the reference is asked."""
+    return np.linspace(0, case.samples, 21).astype(int)
+
+
+def reference_table(case: Case) -> dict[str, np.ndarray]:
+    keep = bool(case.start.get("keep_contact", False))
+    times = case.times[reference_rows(case)] - case.start_time
+    flat = None if keep else 1e-7
+    found = solve(case.wheel, case.motion, times, rtol=1e-12, keep_contact=keep, flat=flat)
+    return {**found.columns, "t": found.t}
+
+
+def reference(case: Case, run: Run, table: dict[str, np.ndarray]) -> float:
+    rows = reference_rows(case)
+    rows = rows[rows < len(run["t"]) - (run.end is not None)]  # the ending has its own judge
+    wheel = case.wheel
+    rate = np.sqrt(wheel.g / (wheel.r_0 + wheel.r))
+    least = {"X_O": wheel.r_0, "theta": 1.0, "phi_dot": rate, "psi_dot": rate}
+    worst = 0.0
+    for name in HEADLINE:
+        want = table[name][: len(rows)]
+        worst = max(worst, np.abs(run[name][rows] - want).max() / max(np.abs(want).max(), least[name]))
+    return float(worst)
+
+
+def still(_: Case, run: Run) -> float:
+    return float(np.abs(run["theta"] - run["theta"][0]).max())
+
+
+def uniform(_: Case, run: Run) -> float:
+    rates = np.column_stack([run[name] for name in ("theta_dot", "psi_dot", "phi_dot")])
+    return float(np.abs(rates - rates[0]).max() / (np.abs(rates).max() or 1.0))
+
+
+def fixed(_: Case, run: Run) -> float:
+    held = run["friction_mode"] == 0
+    return float(np.abs(run["omega_z"][held]).max(initial=0.0))
+
+
+RATES = ("omega_z", "lambda_3")  # whose rates friction_work reads
+JUDGES = {of.__name__: of for of in (energy, integrals, reference, still, uniform, fixed)}
+FLOORS = {"energy": 2e-12, "integrals": 1e-10, "reference": 1e-9, "uniform": 1e-12}
+
+
+def floor(name: str, case: Case, run: Run) -> float:
+    """What a judge cannot see: rounding, its own quadrature."""
+    return FLOORS.get(name, 0.0) + (work_uncertainty(case, run) if name == "energy" else 0.0)
+
+
+# The regularized law -s N tanh(omega_z / omega_s) against the exact one, in the paper's scene with friction.
+FRICTION: Values = {"s": 0.03}
+TIMES = np.linspace(0.0, 10.0, 101)
+
+
+def law_bound(omega_s: float, tolerance: float) -> float:
+    """Error of the law allowed: per rad/s of its width, per tolerance."""
+    return 5.0 * omega_s + 100.0 * tolerance
+
+
+def error_against(truth: Run, found: Run) -> float:
+    """Of the headline outputs, relative to the range of each; nan where the run did not get to the end."""
+    if found.status > WARNING or len(found["t"]) != len(truth["t"]):
+        return float("nan")
+    return range_error(found, truth, HEADLINE)
+
+
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+
+
+class Finding(NamedTuple):
+    """One judge's error; floor: what the judge itself cannot see."""
+
+    judge: str
+    error: float
+    allowed: float
+    floor: float
+
+
+@dataclass
+class Verdict:
+    """faults: sentences, empty where all is as expected."""
+
+    tolerance: float
+    outcome: str
+    errors: list[Finding] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+    claimed: bool = True  # the tolerance is within those for which the case promises anything
+    steps: int = 0
+    events: int = 0
+    seconds: float = 0.0
+
+    @property
+    def holds(self) -> bool:
+        return not self.faults or not self.claimed
+
+
+def outcome_of(run: Run) -> str:
+    if not run.columns:
+        return "refused"
+    if run.end is not None:
+        return "flat" if np.sin(run["theta"][-1]) < 1e-6 else "lifts"
+    return "finishes" if run.status <= WARNING else ("discarded" if run.status == DISCARD else "fails")
+
+
+def judge(case: Case, tolerance: float, done: Run, table: dict | None) -> Verdict:
+    outcome = outcome_of(done)
+    verdict = Verdict(tolerance, outcome, seconds=done.seconds, claimed=tolerance <= case.loosest)
+    if outcome != case.expect.kind:
+        verdict.faults.append(f"{outcome} instead of {case.expect}: {' '.join(done.messages[-1:])}")
+    if not done.columns:
+        return verdict
+    verdict.steps, verdict.events = done.counters["n_steps"], done.counters["n_events"]
+    if not all(np.isfinite(column).all() for name, column in done.columns.items() if name != "mu_required"):
+        verdict.faults.append("an output is not finite")
+        return verdict
+    if done.end is not None and case.expect.at is not None:
+        error = abs(done.end - case.start_time - case.expect.at)
+        weigh(verdict, "instant", error, case.instant, case.instant_floor)
+    for name, bound in case.judges:
+        extra = (table,) if name == "reference" else ()
+        weigh(verdict, name, JUDGES[name](case, done, *extra), bound, floor(name, case, done))
+    return verdict
+
+
+def weigh(verdict: Verdict, name: str, error: float, bound: float, unseen: float) -> None:
+    """Allowed: bound times the tolerance, and what the judge cannot see."""
+    allowed = bound * verdict.tolerance + unseen
+    verdict.errors.append(Finding(name, error, allowed, unseen))
+    if not error <= allowed:
+        verdict.faults.append(f"{name}: {error:.1e}, allowed {allowed:.1e}")
+
+
+def judge_case(library: Library, case: Case, tolerances: tuple[float, ...] = TOLERANCES) -> list[Verdict]:
+    wants_reference = any(name == "reference" for name, _ in case.judges)
+    table = reference_table(case) if wants_reference else None
+    return [judge(case, t, run(library, case.start, case.times, t, rates=RATES), table) for t in tolerances]

@@ -1,0 +1,1 @@
+"""The wheel by other programs and methods."""

@@ -1,0 +1,53 @@
+"""The three scenes of docs/benchmark.md, and how far a solution is from the reference values."""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.reference import Solution, solve
+from wheelfmu.truth.scenes import Scene
+from wheelfmu.truth.schedule import Schedule
+
+OUTPUTS = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "lambda_3")
+INSTANTS = tuple(range(1, 11))  # s
+DATA = ROOT / "docs" / "results" / "data"
+PROBLEMS = {
+    "free": Scene(),
+    "friction": Scene({"s": 0.03}),
+    "driven": Scene({"J_x": 0.8, "J_y": 1.0}, inputs=Schedule(((0.0, {"M_3": (0.0, -1.0, 0.1)}),))),
+}
+
+
+def by_fmu(library: Library, scene: Scene, tolerance: float) -> Run:
+    return library.simulate([0.0, *INSTANTS], tolerance, scene.inputs, **scene.start)
+
+
+def by_reference(scene: Scene, tolerance: float) -> Solution:
+    return solve(scene.wheel, scene.motion, [0.0, *INSTANTS], scene.inputs.for_reference(), rtol=tolerance)
+
+
+def table(name: str) -> NDArray[np.float64]:
+    """The reference values, a row for each instant."""
+    return pd.read_csv(DATA / "benchmark.csv").query("scene == @name")[list(OUTPUTS)].to_numpy()
+
+
+def transitions(name: str) -> list[tuple[float, int]]:
+    """Instant, and sign of omega_z after it."""
+    if name != "friction":
+        return []
+    return [tuple(row) for row in pd.read_csv(DATA / "benchmark_transitions.csv").itertuples(index=False)]
+
+
+def errors(name: str, found: Run | Solution) -> tuple[float, float | None]:
+    """Largest error of an output relative to its range, and of a transition, s (infinite if one is missing)."""
+    want, known = table(name), transitions(name)
+    rows = np.column_stack([found[output][1:] for output in OUTPUTS])
+    error = float((np.abs(rows - want).max(axis=0) / np.ptp(want, axis=0)).max())
+    if not known:
+        return error, None
+    events = [event for event in found.events if event[0] > 0]
+    if [mode for _, mode in events] != [mode for _, mode in known]:
+        return error, np.inf
+    return error, float(max(abs(a - b) for (a, _), (b, _) in zip(events, known, strict=True)))
