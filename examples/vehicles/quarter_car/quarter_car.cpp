@@ -1,6 +1,6 @@
 /* Quarter car: a sprung mass B above the wheel's centre O, linked to it by springs and dampers without mass. B does not
- * turn; the wheel's own wheel carrier (`guided`) keeps the axle, the hub motor gives M_3 about it. Fixed axes X, Y, Z, Z
- * up.
+ * turn; the wheel's own wheel carrier (`guided`) keeps the axle, the hub motor gives M_3 about it. Fixed axes X, Y, Z,
+ * Z up.
  *
  *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c
  *   m_B a_B = -F - m_B g (sin(slope) cos(slope_direction), sin(slope) sin(slope_direction), cos(slope))

@@ -1,8 +1,8 @@
 """Suspended wheel: a quarter car, launched from rest by a step of the drive torque, or stopped on a wet road.
 
 Coupled through F_X, F_Y, F_Z, M_3 and position and velocity of O, by values held over the communication step or by
-straight lines (derivatives of first order); the guided wheel has its own wheel carrier. In the end both move on together:
-with m all masses, R the wheel's rolling radius,
+straight lines (derivatives of first order); the guided wheel has its own wheel carrier. In the end both move on
+together: with m all masses, R the wheel's rolling radius,
 
     (m + J_z / R^2) a = (M_drive - s m g) / R
 """
