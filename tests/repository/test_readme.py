@@ -175,12 +175,16 @@ def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shorte
 
 
 def test_a_wheel_rolls_onto_a_hill_as_far_as_its_energy_takes_it(root):
-    lines, (_, shown) = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)
+    lines, shown = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)[1]
     assert python(lines, root) == shown
     way, height = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(way - height), 0.005, "distance uphill, m")  # as printed
     flat = python(lines.replace("[SLOPE])", "[SLOPE / 2])"), root)  # the partner: half the slope
     beyond(float(re.search(r"([\d.]+) m;", flat)[1]) - height, 500, "distance uphill, m")
+
+
+def test_the_step_limit_prints_what_its_section_shows(root):
+    assert run("python", EXAMPLES / "step_limit.py", folder=root) == blocks("text", VEHICLE)[2]
 
 
 TUTORIAL = (ROOT / "docs" / "first_suspension.md").read_text(encoding="utf-8")

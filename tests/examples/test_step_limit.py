@@ -1,0 +1,152 @@
+"""The limit of the communication step: couplings of wheel.fmu with bodies, each stable below it and divergent above.
+
+Two runs whose bodies start 1e-6 m/s apart: over many steps their difference decays or grows. Bodies are integrated
+exactly under held forces. SI.
+"""
+
+import sys
+from collections.abc import Callable
+from importlib.util import module_from_spec, spec_from_file_location
+from math import pi
+
+import numpy as np
+import pytest
+
+from wheelfmu.fmu.driver import OK, FMU2Wheel
+from wheelfmu.fmu.paths import ROOT
+
+PROGRAM = spec_from_file_location("step_limit", ROOT / "examples" / "python" / "step_limit.py")
+sys.modules["step_limit"] = example = module_from_spec(PROGRAM)  # dataclasses look their module up
+PROGRAM.loader.exec_module(example)
+Wheel, step_limit = example.Wheel, example.step_limit
+
+SIGNALS = {
+    "X": ("X_O", "X_O_dot", "F_X"),
+    "Y": ("Y_O", "Y_O_dot", "F_Y"),
+    "spin": ("phi", "omega_z", "M_3"),
+    "lean": ("theta", "theta_dot", "M_1"),
+    "turn": ("psi", "psi_dot", "M_2"),
+}
+UPRIGHT = {"psi_start": 0.0, "theta_start": pi / 2, "phi_dot_start": 0.0, "X_O_start": 0.0, "Y_O_start": 0.0}
+GUIDED = {**UPRIGHT, "guided": True}
+SLIDES = {**GUIDED, "mu_max": 0.3, "mu_slide": 0.3, "slip_x_start": 150.0}
+ROLLS, FOUR = {"wheel": Wheel()}, {name: Wheel() for name in ("fl", "fr", "rl", "rr")}
+SLIDING = {"wheel": Wheel(slides=True)}
+TWO = {name: Wheel() for name in ("left", "right")}
+STEPS, WINDOW = 250, 20
+BUSHING, SHAFT = (2e5, 4e3), (3e3, 40.0)
+
+
+def free_wheel(name: str) -> list:
+    camber, steer = (4e4, 400.0), (2e4, 100.0)
+    return [
+        (*camber, (name, "lean"), None),
+        (*steer, (name, "turn"), None),
+        (*BUSHING, (name, "X"), "body X"),
+        (*BUSHING, (name, "Y"), "body Y"),
+    ]
+
+
+# start values, wheels, bodies, links
+COUPLINGS = {
+    "a bushing on a body": (GUIDED, ROLLS, {"body": 300.0}, [(*BUSHING, ("wheel", "X"), "body")]),
+    "a stiff, hardly damped link": (GUIDED, ROLLS, {"body": 300.0}, [(2e5, 600.0, ("wheel", "X"), "body")]),
+    "a bushing, the wheel locked": (SLIDES, SLIDING, {"body": 300.0}, [(*BUSHING, ("wheel", "X"), "body")]),
+    "four wheels on one beam": (GUIDED, FOUR, {"beam": 150.0}, [(*BUSHING, (name, "X"), "beam") for name in FOUR]),
+    "a drive shaft, rolling": (GUIDED, ROLLS, {"engine": 0.6}, [(*SHAFT, ("wheel", "spin"), "engine")]),
+    "a drive shaft, spinning": (SLIDES, SLIDING, {"engine": 0.6}, [(*SHAFT, ("wheel", "spin"), "engine")]),
+    "a drive shaft and a bushing": (
+        GUIDED,
+        ROLLS,
+        {"engine": 0.6, "body": 300.0},
+        [(*SHAFT, ("wheel", "spin"), "engine"), (*BUSHING, ("wheel", "X"), "body")],
+    ),
+    "a camber link": (UPRIGHT, ROLLS, {"hub": 2.0}, [(4e4, 400.0, ("wheel", "lean"), "hub"), (2e4, 50.0, "hub", None)]),
+    "two free wheels on a body": (
+        UPRIGHT,
+        TWO,
+        {"body X": 300.0, "body Y": 300.0},
+        [link for name in TWO for link in free_wheel(name)],
+    ),
+    "two wheels on a body that yaws": (
+        GUIDED,
+        TWO,
+        {"body": 300.0, "yaw": 60.0},
+        [(*BUSHING, (name, "X"), {"body": 1.0, "yaw": b}) for name, b in (("left", -0.8), ("right", 0.6))],
+    ),
+}
+
+
+class Coupled:
+    """The coupling, and its motion under held forces."""
+
+    def __init__(self, new, start, wheels, bodies, links, kick: float) -> None:
+        self.links, self.bodies = links, bodies
+        self.wheels: dict[str, FMU2Wheel] = {name: new().start(**start) for name in wheels}
+        self.x, self.v = dict.fromkeys(bodies, 0.0), {name: kick * (i + 1) for i, name in enumerate(bodies)}
+        self.origin = {end: self.read(end)[0] for _, _, *ends in links for end in ends if self.of_wheel(end)}
+
+    @staticmethod
+    def of_wheel(end) -> bool:
+        return isinstance(end, tuple)
+
+    def read(self, end) -> np.ndarray:
+        """Displacement and velocity of a link's end."""
+        if end is None:
+            return np.zeros(2)
+        if self.of_wheel(end):
+            return np.array(self.wheels[end[0]].get(*SIGNALS[end[1]][:2]))
+        ratios = end if isinstance(end, dict) else {end: 1.0}
+        return np.sum([np.multiply(ratio, (self.x[n], self.v[n])) for n, ratio in ratios.items()], axis=0)
+
+    def step(self, h: float) -> bool:
+        """Over h; False where a wheel ends its run."""
+        on_body, on_wheel = dict.fromkeys(self.bodies, 0.0), {}
+        for k, c, first, second in self.links:
+            x, v = self.read(first) - self.read(second) - (self.origin.get(first, 0.0), 0.0)
+            for force, end in ((-k * x - c * v, first), (k * x + c * v, second)):
+                if end is None:
+                    continue
+                if self.of_wheel(end):
+                    name = (end[0], SIGNALS[end[1]][2])
+                    on_wheel[name] = on_wheel.get(name, 0.0) + force
+                else:
+                    for body, ratio in (end if isinstance(end, dict) else {end: 1.0}).items():
+                        on_body[body] += ratio * force
+        for (name, load), force in on_wheel.items():
+            assert self.wheels[name].set(**{load: force}) == OK
+        for name, force in on_body.items():
+            a = force / self.bodies[name]
+            self.x[name] += self.v[name] * h + a * h**2 / 2
+            self.v[name] += a * h
+        ended = [wheel.step(h) != OK for wheel in self.wheels.values()]
+        return not any(ended)
+
+    def state(self) -> np.ndarray:
+        found = [self.read(end)[1] for end in self.origin]
+        return np.array([*found, *self.v.values()])
+
+
+def grows(new: Callable[..., FMU2Wheel], coupling: tuple, h: float) -> bool:
+    """Whether the difference of two runs, in its largest signal, swings wider after many steps than after few."""
+    start, *rest = coupling
+    runs = [Coupled(new, start, *rest, kick) for kick in (1e-4, 1.1e-4)]
+    sizes = []
+    for _ in range(STEPS):
+        if False in [run.step(h) for run in runs]:
+            return True
+        sizes.append(float(np.abs(runs[1].state() - runs[0].state()).max()))
+    free = min(sizes[-WINDOW:])  # a free motion of the whole stays
+    return max(sizes[-WINDOW:]) - free > max(sizes[:WINDOW])
+
+
+@pytest.mark.parametrize("name", COUPLINGS)
+def test_couplings_are_stable_below_the_limit_of_their_step_and_diverge_above_it(wheel, name: str):
+    _, wheels, bodies, links = coupling = COUPLINGS[name]
+    limit = step_limit(wheels, bodies, links)
+    assert not grows(wheel, coupling, 0.95 * limit)
+    assert grows(wheel, coupling, 1.05 * limit)
+
+
+def test_a_held_link_without_damping_has_no_stable_step():
+    assert step_limit({}, {"body": 300.0}, [(2e5, 0.0, "body", None)]) == 0
