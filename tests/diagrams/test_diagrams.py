@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,14 +21,18 @@ TIME = np.linspace(0.0, 10.0, 1001)
 SWING = 1.0 + 0.3 * np.cos(3 * TIME)  # rad
 
 
-def scene(s: float = 0.0, time: np.ndarray = TIME, **columns: np.ndarray | float) -> Scene:
-    """A wheel that swings, with the paper's parameters but for those given."""
-    rates = {"psi_dot": 2 / SWING**2, "phi_dot": -2 / SWING**3}
+def scene(s: float = 0.0, time: np.ndarray = TIME, **given: np.ndarray | float) -> Scene:
+    """A wheel that swings, with the paper's parameters but for those given; further fields of a scene too."""
+    fields = {n: given.pop(n) for n in ("instants", "transitions", "ending") if n in given}
+    settings = {n: v.preset for n, v in paper.SETTINGS.items()} | {"s": s}
+    settings |= {n: given.pop(n) for n in [*given] if n in settings}
     motion = {"time": time, "theta": SWING, "X_O": SWING, "X_C": np.sin(TIME), "Y_C": TIME, "lambda_3": 200 * SWING}
-    settings = {name: v.preset for name, v in paper.SETTINGS.items()} | {"s": s, "n_events": 0, "friction_mode": 1}
-    settings |= {"contact_mode": 0, "slip_x": 0, "slip_y": 0}
-    everything = settings | rates | motion | {"mu_required": SWING / 3} | columns
-    return Scene(Path("scene.csv"), {name: np.broadcast_to(value, len(TIME)) for name, value in everything.items()})
+    motion |= {"psi": TIME, "psi_dot": 2 / SWING**2, "phi_dot": -2 / SWING**3, "mu_required": SWING / 3}
+    motion |= {"X_O_dot": np.cos(TIME), "friction_mode": 1}
+    motion |= dict.fromkeys(("Y_O", "Y_O_dot", "lambda_x", "lambda_y", "slip_x", "slip_y", "contact_mode"), 0)
+    motion |= dict.fromkeys(("M_guide_1", "M_guide_2"), 0)
+    columns = {n: np.broadcast_to(np.asarray(x, dtype=float), len(TIME)) for n, x in (motion | given).items()}
+    return Scene("friction" if s else "free", columns, settings, **fields)
 
 
 def caption(one: Scene, *drawn: paper.Panel) -> str:
@@ -73,7 +78,7 @@ def test_nothing_is_cut_off_and_no_power_of_ten_stands_over_a_title(monkeypatch:
 def test_a_caption_names_the_marks_of_friction_where_they_are() -> None:
     """Bands and ticks over time, thick lines among the rates, none on the path."""
     modes = np.where(abs(TIME - 3) < 1, 0, np.where(TIME < 7, -1, 1))
-    held = scene(0.03, friction_mode=modes, n_events=3, psi_dot=TIME)
+    held = scene(0.03, friction_mode=modes, transitions=3, psi_dot=TIME)
     for panel in paper.PAPERS + paper.OTHERS:
         said, timed = caption(held, panel), panel.name in ("position", "tilt", "ground")
         assert ("Ticks at the top" in said) is timed and ("Orange at the top: held" in said) is timed
@@ -111,7 +116,10 @@ DIFFERENT = {"Boolean": 1.0, "Integer": 2.0, "Real": 0.25}
 @pytest.mark.parametrize("name", sorted({*paper.SETTINGS} - {"s", *paper.SOLVING}))
 def test_a_caption_lists_whatever_is_not_the_papers(name: str) -> None:
     other = scene(0.03, **{name: DIFFERENT[paper.SETTINGS[name].type]})
-    assert f"{name} = " in caption(other)
+    stated = "14.324°" if name in ("psi_start", "theta_start", "phi_start") else "= 0.25$"
+    start = name.endswith("_start") and not name.startswith("slip")
+    said, own = caption(other), caption(scene(0.03))
+    assert (stated in said and stated not in own) if start else f"{name} = " in said
     assert not paper.is_paper([other, other])
 
 
@@ -132,54 +140,116 @@ def test_figure_numbers_and_file_names_of_the_paper_belong_to_its_two_scenes() -
     assert "stop_time = 20 s" in " ".join(paper.unlike_paper(longer[0]))
 
 
-def test_a_guided_wheel_has_speeds_slip_ratio_forces_and_distance_in_the_place_of_what_stays() -> None:
-    """Locked after 2 s, it stands after 8 s: 8 m/s falls evenly, the spin four times as fast."""
-    v, rolling = np.maximum(8 - TIME, 0), np.maximum(8 - 4 * TIME, 0)
-    course = {"X_O_dot": v, "Y_O_dot": 0, "psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "Y_O": 0}
-    way = np.where(TIME < 8, 8 * TIME - TIME**2 / 2, 32)
-    braked = scene(guided=1, contact_mode=v > 0, X_O=way, lambda_1=-20, lambda_x=-20, lambda_y=0, **course)
-    drawn = [panel for panels in paper.panels_of([braked]) for panel in panels]
-    assert [panel.name for panel in drawn] == ["speeds", "slip_ratio", "forces", "distance"]
-    assert np.allclose(braked.rolling_speed, rolling) and np.isnan(braked.slip_ratio[TIME >= 8]).all()
-    assert np.allclose(braked.slip_ratio[TIME < 8], (rolling / np.where(v > 0, v, 1) - 1)[TIME < 8])
-    said = caption(braked, *drawn)
-    assert "braking negative" in said and "guided = true" in said
+def shown(*scenes: Scene) -> list[str]:
+    return [panel.name for panel in paper.panels_of(scenes)]
+
+
+def labels(draw: Callable, one: Scene) -> list[str]:
     ax = style.figure_mm(80, 80).subplots()
-    panels.draw_forces(ax, braked)
-    assert [text.get_text() for text in ax.texts] == ["$N$", "along $e_1$"]  # none to the left
-    across = scene(guided=1, contact_mode=1, slip_y=1.0, X_O=way, lambda_x=0, lambda_y=-20, **{**course, "slip_x": v})
-    assert [panel.name for panel in paper.panels_of([across])[1]] == ["forces", "distance", "path"]
-    assert paper.panels_of([scene()])[0] == paper.PAPERS  # the partner
+    draw(ax, one)
+    return [text.get_text() for text in ax.texts]
 
 
-def written(folder: Path, name: str, one: Scene, rows: int) -> None:
-    columns = {n: values[:rows] for n, values in one.columns.items()}
-    columns["time"] = np.arange(rows) * 0.01 if rows > 2 else np.zeros(rows)
-    table, names = np.column_stack(list(columns.values())), ",".join(columns)
-    np.savetxt(folder / f"{name}.csv", table, delimiter=",", header=names, comments="")
-    (folder / f"{name}.log").write_text(
-        "[WARNING] The wheel lifted off the ground at t = 0.5927504 s: the run ends there.\n"
+def locked() -> Scene:
+    """On its hub carrier, locked at once; 8 m/s falls evenly, the spin four times as fast; it stands after 8 s."""
+    v, rolling = np.maximum(8 - TIME, 0), np.maximum(8 - 4 * TIME, 0)
+    course = {"X_O_dot": v, "psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "psi_dot": 0}
+    way = np.where(TIME < 8, 8 * TIME - TIME**2 / 2, 32)
+    limits = {"mu_max": 0.1, "mu_slide": 0.1}
+    return scene(guided=1, contact_mode=v > 0, X_O=way, lambda_3=200, lambda_x=-20 * (v > 0), **course, **limits)
+
+
+def test_a_locked_wheel_has_speeds_slip_ratio_forces_with_their_limit_and_distance() -> None:
+    one = locked()
+    assert shown(one) == ["speeds", "slip_ratio", "forces", "distance"]
+    rolling = np.maximum(8 - 4 * TIME, 0)
+    assert np.allclose(one.rolling_speed, rolling) and np.isnan(one.slip_ratio[TIME >= 8]).all()
+    said = caption(one, *paper.panels_of([one]))
+    assert "braking negative" in said and "guided = true" in said and "it is drawn from" not in said
+    assert labels(panels.draw_speeds, one) == [r"$-R\,\omega_z$", "$v$"]
+    assert labels(panels.draw_forces, one) == [r"$\lambda_x$", "$N$"]  # none to the left
+    assert labels(panels.draw_distance, one) == ["32 m"]
+    ax = style.figure_mm(80, 80).subplots()
+    panels.draw_forces(ax, one)
+    (limit,) = (line.get_ydata() for line in ax.lines if line.get_linestyle() == "--")
+    assert limit == pytest.approx(-20 * np.ones(len(TIME)))
+
+
+def test_a_steered_wheel_that_slides_out_has_path_velocities_side_force_and_the_moment_of_its_carrier() -> None:
+    turn = {"psi": 0.5 * TIME, "psi_dot": 0.5, "theta": np.pi / 2, "phi_dot": -20.0, "slip_y": 0.3 * TIME}
+    turn |= {"X_O_dot": 8 * np.cos(0.5 * TIME), "Y_O_dot": 8 * np.sin(0.5 * TIME), "contact_mode": 1}
+    one = scene(guided=1, mu_max=0.3, mu_slide=0.25, lambda_3=200, lambda_y=50, M_guide_1=-60, **turn)
+    assert shown(one) == ["path", "velocities", "slip", "forces", "carrier"]
+    assert np.allclose(one.speed, 8) and np.allclose(one.sideways, 0)
+    assert labels(panels.draw_velocities, one) == [r"$-R\,\omega_z$ = $v_x$", "$v_y$"]
+    assert labels(panels.draw_forces, one) == [r"$\lambda_y$", "$N$"]
+    assert labels(panels.draw_carrier, one) == [panels.LETTER["M_guide_1"], panels.LETTER["M_guide_2"]]
+    ax = style.figure_mm(80, 80).subplots()
+    panels.draw_forces(ax, one)
+    (limit,) = (line.get_ydata() for line in ax.lines if line.get_linestyle() == "--")
+    assert limit == pytest.approx(0.25 * 200 * np.ones(len(TIME)))  # mu_slide while it slides
+
+
+def test_panels_without_content_are_left_out_and_forces_that_keep_their_values_stand_in_the_caption() -> None:
+    """A vehicle's wheel straight ahead; partner: the paper's has all."""
+    ahead = {"psi": 0.0, "theta": np.pi / 2, "psi_dot": 0.0, "phi_dot": -14.0, "lambda_3": 196.2, "mu_required": 0.01}
+    rolls, slows = scene(X_O_dot=5.0, **ahead), scene(0.004, X_O_dot=5 - 0.1 * TIME, **ahead)
+    assert shown(rolls) == ["distance"] and shown(rolls, slows) == ["speeds", "distance"]
+    assert r"Throughout $N = 196.2$ N, and rolling needs $\mu = 0.01$." in " ".join(
+        paper.caption([rolls], [paper.kept(rolls, paper.panels_of([rolls]))], 400.0, 7.5)
     )
+    assert shown(scene()) == ["position", "tilt", "rates", "path", "ground"] and paper.kept(scene(), paper.PAPERS) == []
+    assert labels(panels.draw_speeds, rolls) == [r"$-R\,\omega_z$ = $v$"]
 
 
-@pytest.mark.parametrize(("free", "friction"), [(1001, 2), (2, 1001)])
+def test_of_two_scenes_that_look_alike_one_is_drawn_and_its_caption_says_so() -> None:
+    fall = {"theta": 1.3 * np.cos(TIME / 10), "phi_dot_start": 0.0}
+    both = [scene(**fall), scene(0.03, **fall | {"theta": fall["theta"] + 1e-3 * np.sin(TIME)})]
+    wanted = PICTURES(both, Path("results"))
+    assert {tuple(one.name for one in scenes) for _, scenes, *_ in wanted} == {("friction",)}
+    assert "Without it the diagrams look alike." in caption(wanted[0][1][0])
+    apart = [both[0], scene(0.03, **fall | {"theta": 1.3 * np.cos(TIME / 8)})]
+    assert PICTURES(apart, Path("results"))[0][1] == apart
+
+
+def test_the_largest_value_and_the_instant_of_rest_are_those_between_the_rows() -> None:
+    """Partner: the rows themselves, of which none is at the top."""
+    hump = np.cos(TIME - 2.345)[TIME < 5]
+    assert scene().peak(hump) == pytest.approx((2.345, 1), abs=1e-9) and hump.max() < 1 - 1e-5
+    tent = 5 - abs(TIME - 4.0)
+    assert scene(instants=(4.0,)).peak(tent) == pytest.approx((4, 5), abs=1e-12) and scene().peak(TIME) == (10, 10)
+    stops = scene(theta=np.pi / 2, psi_dot=0.0, phi_dot=np.minimum(TIME - 2.1237, 0), instants=(2.1237,))
+    assert stops.rest == 2.1237 and "It stands from 2.124 s on." in caption(stops)
+
+
+def test_a_coefficient_of_friction_beyond_every_road_and_that_of_a_slide_leave_a_gap() -> None:
+    needs = {"mu_required": np.where(TIME > 8, 5.0, TIME / 10), "contact_mode": abs(TIME - 3) < 1}
+    one = scene(mu_max=0.5, mu_slide=0.4, **needs)
+    fig = style.figure_mm(80, 80)
+    said = panels.draw_ground(fig.subplots(), one)
+    (curve,) = (line.get_ydata() for line in fig.axes[1].lines if len(line.get_ydata()) == len(TIME))
+    assert (np.isnan(curve) == ((abs(TIME - 3) < 1) | (TIME > 8))).all() and np.nanmax(curve) < 0.81
+    assert said[-1] == r"$\mu$ above 2 is left out"
+    assert [text.get_text() for text in fig.axes[1].texts] == [r"$\mu_\mathrm{max}$", r"$\mu_\mathrm{slide}$"]
+
+
+@pytest.mark.parametrize("free", [True, False])
 def test_of_two_scenes_the_one_that_moves_is_drawn_and_the_other_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, free: int, friction: int
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, free: bool
 ) -> None:
-    drawn = []
+    drawn, still = [], "friction" if free else "free"
     monkeypatch.setattr(paper, "pictures", lambda scenes, out: drawn.extend(scenes) or PICTURES(scenes, out)[:1])
-    written(tmp_path, "free", scene(), free)
-    written(tmp_path, "friction", scene(0.03), friction)
-    paper.main(tmp_path)
-    still, moving = ("free", "friction") if free < friction else ("friction", "free")
-    assert (
-        f'The scene "{still}" has no motion to draw: the wheel lifted off the ground at t = 0.593 s.'
-        in capsys.readouterr().err
-    )
-    assert [one.path.stem for one in drawn] == [moving] and (tmp_path / "diagrams.png").stat().st_size > 1e5
-    (tmp_path / f"{moving}.csv").write_text((tmp_path / f"{still}.csv").read_text())
+    ends = {"ending": "lifted off the ground at $t$ = 0.5928 s"}
+    both = [replace(scene(s), columns={n: x[:1] for n, x in scene(s).columns.items()}, **ends) for s in (0.0, 0.03)]
+    both[not free] = scene(0.03 * (not free))
+    monkeypatch.setattr(paper, "scenes_of", lambda *_: both)
+    paper.main(tmp_path, {})
+    why = "has no motion to draw: the wheel lifted off the ground at t = 0.5928 s."
+    assert f'The scene "{still}" {why}' in capsys.readouterr().err
+    assert [one.name for one in drawn] == [both[not free].name] and (tmp_path / "diagrams.png").stat().st_size > 1e5
+    both[not free] = both[free]
     with pytest.raises(SystemExit, match="^run: Neither scene has a motion to draw"):
-        paper.main(tmp_path)
+        paper.main(tmp_path, {})
 
 
 NO_ARC = {
@@ -199,14 +269,15 @@ SLIDES = (TIME > 1) & (TIME < 2) | (TIME > 4.5) & (TIME < 5)
 
 
 def slid() -> Scene:
-    return scene(contact_mode=SLIDES, slip_x=-0.3 * SLIDES, slip_y=0.4 * SLIDES, mu_max=0.45, mu_slide=0.4)
+    road = {"mu_max": 0.45, "mu_slide": 0.4, "contact_mode": SLIDES}
+    return scene(instants=(1.0, 2.0, 4.5, 5.0), slip_x=-0.3 * SLIDES, slip_y=0.4 * SLIDES, **road)
 
 
 def test_a_slide_is_marked_on_the_path_and_on_the_axes_of_time_between_loss_and_return_of_grip() -> None:
     style.use_style()
     for one in (slid(), scene()):
         expected = [1, 2, 4.5, 5] if one.slides.any() else []
-        assert one.turns == pytest.approx(expected, abs=0.01)
+        assert one.turns.tolist() == expected
         path, tilt = style.figure_mm(80, 160).subplots(2)
         panels.draw_path(path, one)
         panels.draw_tilt(tilt, one)
@@ -236,14 +307,14 @@ def test_the_slip_has_a_panel_and_the_caption_its_size_where_a_scene_slides() ->
 
 
 def test_a_caption_has_the_wheels_own_count_of_transitions() -> None:
-    rough = {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4, "n_events": 43}
+    rough = {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4, "transitions": 43}
     for slides in ((TIME > 1) & (TIME < 2), TIME < 2, 0):
         assert "43 transitions in 10 s." in caption(scene(contact_mode=slides, **rough))
-    assert "1 transition in 10 s." in caption(scene(0.03, n_events=1)) and "transition" not in caption(scene())
+    assert "1 transition in 10 s." in caption(scene(0.03, transitions=1)) and "transition" not in caption(scene())
 
 
 def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_colon() -> None:
-    scenes, panel = [slid(), replace(slid(), columns=slid().columns | {"s": np.full(len(TIME), 0.03)})], paper.PAPERS[0]
+    scenes, panel = [slid(), replace(slid(), settings=slid().settings | {"s": 0.03})], paper.PAPERS[0]
     remarks = [panel.draw(style.figure_mm(80, 80).subplots(), one) for one in scenes]
     said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: held"]], 175.0, 7.5))
     assert said.count("Purple at the bottom: it slides") == 1 == said.count("Thick: held")
@@ -279,11 +350,10 @@ def test_degrees_are_marked_at_round_values(half: float) -> None:
     assert round(digit, 9) in ((1.5, 3) if half > 0.27 else (1, 2, 5)) and abs(ticks / step % 1).max() < 1e-6
 
 
-def test_a_jammed_wheel_is_drawn_without_the_force_beyond_the_jam(tmp_path: Path) -> None:
+def test_a_jammed_wheel_is_drawn_without_the_force_beyond_the_jam() -> None:
     one = scene(lambda_3=np.where(TIME < 10, 200 + 10 * TIME, 7e5), contact_mode=1)
     for words, most in (("jams (Painleve's paradox) with mu_slide = 1.8", 300), ("lies flat", 7e5)):
-        there = Scene(tmp_path / "free.csv", one.columns)
-        (tmp_path / "free.log").write_text(f"The wheel {words} at t = 10 s, theta = 1 rad: the run ends there.\n")
+        there = replace(one, ending=f"{words} at $t$ = 10 s")
         ax = style.figure_mm(80, 80).subplots()
         panels.draw_ground(ax, there)
         assert np.nanmax(ax.lines[0].get_ydata()) == pytest.approx(most, rel=1e-3)
@@ -293,7 +363,7 @@ def test_the_parts_of_the_slip_have_labels_also_where_one_is_zero() -> None:
     for one in (slid(), scene(contact_mode=SLIDES, slip_x=0.3 * SLIDES), scene()):
         ax = style.figure_mm(80, 80).subplots()
         panels.draw_slip(ax, one)
-        assert [text.get_text() for text in ax.texts] == ["along", "across"]
+        assert [text.get_text() for text in ax.texts] == ["along, $u_x$", "across, $u_y$"]
 
 
 @pytest.mark.parametrize(("lean", "chance"), [(6e-17, True), (1e-9, False), (0.26, False)])

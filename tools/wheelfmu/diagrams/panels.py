@@ -1,8 +1,9 @@
-"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, the ground's share, the slip.
+"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, the ground's share, and those of a
+vehicle's engineer: speeds, slip, forces, carrier, distance.
 
-Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks: a band
-per stick phase, a tick at the top for each change of sign of omega_z. A slide has a bar on the time axis between thin
-lines where sliding starts and stops. A panel returns the clauses by which the caption explains it.
+Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks at the
+upper margin: a strip while omega_z is held, a tick for each change of its sign. A slide has a strip at the lower margin
+between thin lines where sliding starts and stops. A panel returns the clauses by which the caption explains it.
 """
 
 from typing import Any
@@ -14,17 +15,26 @@ from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, Scalar
 from numpy.typing import ArrayLike
 
 from wheelfmu.diagrams import style
-from wheelfmu.diagrams.scene import Array, Scene
+from wheelfmu.diagrams.scene import STILL, Array, Scene
 
 MARK_STEP = 5  # degrees of theta between the candidates for a mark along an arc
 MARK_ROOM = np.array([0.28, 0.06])  # of the axes: no second mark within this width and height
 NARROW = 0.25  # a bundle is narrow, and shown sheared in an inset, if shearing leaves less of its height
 INSET = (0.39, 0.40)  # width and height in the axes
-SUBDIVISION = 4  # drawn points per row among the rates
+MINUS = "\N{MINUS SIGN}"
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
+ALIKE = 0.005  # of an axis: two curves are one to the eye
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
 PSI_DOT = r"$\dot\psi$"
 PHI_DOT = r"$\dot\varphi$"
+LETTER = {
+    "lambda_x": r"$\lambda_x$",
+    "lambda_y": r"$\lambda_y$",
+    "slip_x": "$u_x$",
+    "slip_y": "$u_y$",
+    "M_guide_1": r"$M_{\mathrm{guide},1}$",
+    "M_guide_2": r"$M_{\mathrm{guide},2}$",
+}
 
 
 def draw_position(ax: Axes, scene: Scene) -> list[str]:
@@ -52,10 +62,10 @@ def draw_tilt(ax: Axes, scene: Scene) -> list[str]:
 
 def draw_path(ax: Axes, scene: Scene) -> list[str]:
     """The path of the contact point from above, in one scale."""
-    time, x, y = scene.smooth(SUBDIVISION, "time", "X_C", "Y_C")
-    _track(ax, x, y, scene.slides[scene.rows_at(time)], style.colour("slide"))
+    x, y = scene["X_C"], scene["Y_C"]
+    _track(ax, x, y, scene.slides, style.colour("slide"))
     ax.set(xlabel="$X$ [m]", ylabel="$Y$ [m]")
-    least, middle = 0.1 * scene.value("r_0"), [(scene[n].min() + scene[n].max()) / 2 for n in ("X_C", "Y_C")]
+    least, middle = 0.1 * scene.value("r_0"), [(along.min() + along.max()) / 2 for along in (x, y)]
     ax.update_datalim(np.add.outer([-least, least], middle))  # set limits could not follow the aspect
     for axis in (ax.xaxis, ax.yaxis):
         _scale(axis, 5)
@@ -70,17 +80,24 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
 
 
 def draw_ground(ax: Axes, scene: Scene) -> list[str]:
-    """Above, the normal force; below, the coefficient of friction that rolling needs, and mu_max if it is set."""
-    marks = _time_axis(ax, scene)
-    right, force, limit = ax.twinx(), scene["lambda_3"], scene.value("mu_max")
+    """Above, the normal force; below, the friction coefficient that rolling needs, and the two that are set."""
+    marks, colour = _time_axis(ax, scene), style.colour("mu")
+    right, force, mu_max, mu_slide = ax.twinx(), scene["lambda_3"], scene.value("mu_max"), scene.value("mu_slide")
     if "jams" in scene.ending:  # there it grows without bound
         force = np.append(force[:-1], np.nan)
-    needed = np.clip(np.nan_to_num(scene["mu_required"], nan=MOST), 0.0, MOST)
+    needed = np.where(scene.slides, np.nan, scene["mu_required"])
+    left_out = bool((needed > MOST).any() or not np.isfinite(scene["mu_required"]).all())
+    needed = np.where(needed <= MOST, needed, np.nan)
     right.spines["right"].set_visible(True)
-    ax.set_ylabel("normal force $N$ [N]", color=style.BLUE)
-    right.set_ylabel(r"$\mu$ required", color=style.VERMILLION)
-    marks += _over_time(ax, scene["time"], force) + _over_time(right, scene["time"], needed, style.VERMILLION)
-    right.set_ylim(0.0, 1.1 * max(needed.max(), limit, 0.05))
+    ax.set_ylabel("normal force $N$ [N]", color=style.colour("N"))
+    right.set_ylabel(r"$\mu$ required", color=colour)
+    marks += _over_time(ax, scene["time"], force, style.colour("N"))
+    if np.isfinite(needed).any():
+        marks += _over_time(right, scene["time"], needed, colour)
+        at, most = scene.peak(needed)
+        if not left_out and not (mu_max and most > 0.8 * mu_max):
+            style.note(right, f"{most:.4g}", (at, most), (2, 3), color=colour, **_inward(scene, at))
+    right.set_ylim(0.0, 1.15 * max(np.nanmax(needed, initial=0.05), mu_max))
     _scale(ax.yaxis, 5, force, 0.02 * scene.value("m") * scene.value("g"))
     _scale(right.yaxis, 5)
     for side, below, above in ((ax, 1.1, 0.0), (right, 0.0, 1.1)):
@@ -88,88 +105,144 @@ def draw_ground(ax: Axes, scene: Scene) -> list[str]:
         side.set_yticks([tick for tick in side.get_yticks() if low <= tick <= high])
         side.yaxis.set_minor_locator(NullLocator())
         side.set_ylim(low - below * (high - low), high + above * (high - low))
-    if limit:
-        right.axhline(limit, color=style.VERMILLION, linewidth=0.8, linestyle=(0, (4, 2)))
-        place = {"color": style.VERMILLION, "xycoords": right.get_yaxis_transform()}
-        style.note(right, r"$\mu_\mathrm{max}$", (0.02, limit), (0, 2), **place)
-    return marks + [rf"$\mu$ is drawn up to {MOST:g}"] * int(needed.max() == MOST)
+    limits = {mu_max: r"$\mu_\mathrm{max}$", mu_slide: r"$\mu_\mathrm{slide}$"}
+    if mu_max == mu_slide:
+        limits = {mu_max: r"$\mu_\mathrm{max} = \mu_\mathrm{slide}$"}
+    for limit, text in limits.items():
+        if limit:
+            right.axhline(limit, color=colour, linewidth=0.8, linestyle=(0, (4, 2)))
+            below = text.endswith(r"slide}$") and len(limits) > 1
+            place = {"xycoords": right.get_yaxis_transform(), "va": "top" if below else "bottom"}
+            style.note(right, text, (0.02, limit), (0, -2 if below else 2), color=colour, **place)
+    return marks + [rf"$\mu$ above {MOST:g} is left out"] * left_out
 
 
 def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     """The slip along and across the rolling direction."""
     ax.set_ylabel("slip [m/s]")
-    marks, parts = _time_axis(ax, scene), {"slip_x": (style.BLUE, "along"), "slip_y": (style.GREEN, "across")}
-    for name, (color, text) in parts.items():
-        marks += _over_time(ax, scene["time"], scene[name], color)
+    marks, parts = _time_axis(ax, scene), {"slip_x": "along", "slip_y": "across"}
+    for name, side in parts.items():
+        marks += _over_time(ax, scene["time"], scene[name], style.colour(name))
         most = int(np.argmax(abs(scene[name])))
         place, shift = {"va": "center"}, (5, 0)
         if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
             most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
-        style.note(ax, text, (scene["time"][most], scene[name][most]), shift, color=color, **place)
+        at, color = (scene["time"][most], scene[name][most]), style.colour(name)
+        style.note(ax, f"{side}, {LETTER[name]}", at, shift, color=color, **place)
     _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
     ax.margins(y=0.12)
     return marks
 
 
 def draw_speeds(ax: Axes, scene: Scene) -> list[str]:
-    """The speed of O along e1, and that at which the spin would roll without slip."""
+    """The speed of O along e1, and that at which it would roll without slip."""
     ax.set_ylabel("speed [m/s]")
     marks = _time_axis(ax, scene)
-    speeds = {r"$-R\,\omega_z$": (scene.rolling_speed, style.VERMILLION), "$v$": (scene.speed, style.BLUE)}
+    rolling = r"$-R\,\omega_z$" if scene.straight else r"$\eta\,\omega_2 - \rho\,\omega_z$"
+    speeds = {rolling: (scene.rolling_speed, style.colour("omega_z")), "$v$": (scene.speed, style.colour("v"))}
     marks += _curves(ax, scene, speeds)
-    return [*marks, r"$R = r_0 + r \sin\theta$, forward is positive"]
+    if scene.straight:
+        return [*marks, r"$R = r_0 + r \sin\theta$, forward is positive"]
+    said = r"$\rho = r_0 + r \sin\theta$, $\eta = r \cos\theta$, $\omega_2 = \dot\psi \sin\theta$"
+    return [*marks, rf"$v$ along $e_1$; without slip it is $\eta\,\omega_2 - \rho\,\omega_z$: {said}"]
+
+
+def draw_velocities(ax: Axes, scene: Scene) -> list[str]:
+    """The velocity of O in the wheel's axes, and that along e1 without slip: a wheel that slides out of a turn."""
+    ax.set_ylabel("velocity [m/s]")
+    marks = _time_axis(ax, scene)
+    velocities = {
+        r"$-R\,\omega_z$": (scene.rolling_speed, style.colour("omega_z")),
+        "$v_x$": (scene.speed, style.colour("v_x")),
+        "$v_y$": (scene.sideways, style.colour("v_y")),
+    }
+    if np.ptp(scene["theta"]) > STILL or abs(np.cos(scene["theta"][0])) > 1e-9:
+        del velocities[r"$-R\,\omega_z$"]
+    marks += _curves(ax, scene, velocities)
+    return [*marks, "$v_x$ along $e_1$, $v_y$ to the left"]
 
 
 def draw_slip_ratio(ax: Axes, scene: Scene) -> list[str]:
-    """kappa from -1, locked; drawn up to 1."""
-    ax.set_ylabel(r"slip ratio $\kappa$")
+    """slip_x over v: -1 is locked; drawn up to 1."""
+    ax.set_ylabel("slip ratio")
     marks = _time_axis(ax, scene)
-    ax.plot(scene["time"], np.clip(scene.slip_ratio, -1.0, 1.0), color=style.BLUE, linewidth=1.0)
+    ax.plot(scene["time"], np.clip(scene.slip_ratio, -1.0, 1.0), color=style.colour("slip_x"), linewidth=1.0)
     _scale(ax.yaxis, 5, [-1.0, 0.0], steps=(1, 5, 10))
     ax.margins(y=0.08)
     over = bool((abs(scene.slip_ratio) > 1).any())
-    marks.append(r"$\kappa = (-R\,\omega_z - v)/v$: braking negative, $-1$ locked")
-    return marks + [r"$\kappa$ is drawn from $-1$ to 1"] * over
+    marks.append(r"slip ratio $(-R\,\omega_z - v)/v$: braking negative, $-1$ locked")
+    return marks + ["it is drawn from $-1$ to 1"] * over
 
 
 def draw_forces(ax: Axes, scene: Scene) -> list[str]:
-    """The ground's force in the wheel's axes; what stays zero is left out."""
+    """The ground's force in the wheel's axes, what stays zero left out; dashed, how much of it friction allows."""
     ax.set_ylabel("force of the ground [N]")
-    marks = _time_axis(ax, scene)
-    forces = {"$N$": ("lambda_3", style.BLUE), "along $e_1$": ("lambda_x", style.VERMILLION)}
-    forces["left of $e_1$"] = ("lambda_y", style.GREEN)
-    weight = scene.value("m") * scene.value("g")
-    shown = {text: (scene[n], color) for text, (n, color) in forces.items() if abs(scene[n]).max() > 1e-6 * weight}
-    return marks + _curves(ax, scene, shown)
+    marks, weight = _time_axis(ax, scene), scene.value("m") * scene.value("g")
+    forces = {LETTER[name]: (scene[name], style.colour(name)) for name in ("lambda_x", "lambda_y")}
+    forces["$N$"] = (scene["lambda_3"], style.colour("N"))
+    shown = {text: of for text, of in forces.items() if abs(of[0]).max() > 1e-6 * weight}
+    limit = scene["lambda_3"] * np.where(scene.slides, scene.value("mu_slide"), scene.value("mu_max"))
+    if scene.value("mu_max") > 0:
+        for side in (1, -1):
+            if any((side * force).max() > 0.3 * limit.min() for text, (force, _) in shown.items() if text != "$N$"):
+                ax.plot(scene["time"], side * limit, color=style.GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+        marks.append(r"dashed: $\mu N$, with $\mu_\mathrm{max}$ while it rolls, $\mu_\mathrm{slide}$ while it slides")
+    words = rf"{LETTER['lambda_x']} along $e_1$, {LETTER['lambda_y']} to the left"
+    return [*marks, *_curves(ax, scene, shown), words]
+
+
+def draw_carrier(ax: Axes, scene: Scene) -> list[str]:
+    """The moment of the hub carrier on the wheel, gyroscopic part included."""
+    ax.set_ylabel(r"moment of the carrier [N$\,$m]")
+    marks, names = _time_axis(ax, scene), ("M_guide_1", "M_guide_2")
+    return marks + _curves(ax, scene, {LETTER[name]: (scene[name], style.colour(name)) for name in names})
 
 
 def draw_distance(ax: Axes, scene: Scene) -> list[str]:
-    """How far O has come along its path."""
-    ax.set_ylabel("distance travelled [m]")
-    marks = _time_axis(ax, scene)
-    ways = np.hypot(np.diff(scene["X_O"]), np.diff(scene["Y_O"]))
-    distance = np.concatenate([[0.0], np.cumsum(ways)])
-    marks += _over_time(ax, scene["time"], distance)
+    """How far O has come along the heading, back again counted off."""
+    ax.set_ylabel("distance [m]")
+    marks, time, v = _time_axis(ax, scene), scene["time"], scene.speed
+    distance = np.concatenate([[0.0], np.cumsum(np.diff(time) * (v[:-1] + v[1:]) / 2)])
+    marks += _over_time(ax, time, distance)
     _scale(ax.yaxis, 5, distance, 1e-3)
-    style.note(ax, f"{distance[-1]:.4g} m", (scene["time"][-1], distance[-1]), (-2, 3), ha="right", va="bottom")
-    ax.margins(y=0.12)
+    (at, most), end = scene.peak(distance), (time[-1], distance[-1])
+    points = [end, (at, most)] if most - end[1] > 0.01 * np.ptp(distance) else [end]
+    for at, reached in points:
+        rises = reached >= distance[len(time) // 2]
+        look = {"ha": "right", "va": "bottom" if rises else "top"}
+        style.note(ax, f"{reached:.4g} m".replace("-", MINUS), (at, reached), (-2, 3 if rises else -3), **look)
+    ax.margins(y=0.14)
     return marks
 
 
+def _inward(scene: Scene, at: float) -> dict[str, str]:
+    """A text's side of an instant, so that it stays in the axes."""
+    return {"ha": "right" if at > np.mean(scene["time"][[0, -1]]) else "left"}
+
+
 def _curves(ax: Axes, scene: Scene, curves: dict[str, tuple[Array, str]]) -> list[str]:
-    """Curves over time, each with its name where it is farthest from the others."""
+    """Curves over time, each with its name where it is farthest from the others; those that coincide share one."""
     marks, values = [], np.array([curve for curve, _ in curves.values()])
-    for k, (text, (curve, color)) in enumerate(curves.items()):
-        marks += _over_time(ax, scene["time"], curve, color)
-        others = np.delete(values, k, axis=0)
+    for curve, colour in curves.values():
+        marks += _over_time(ax, scene["time"], curve, colour)
+    _scale(ax.yaxis, 5, values, 1e-3)
+    ax.margins(y=0.14)
+    range_of_all = max(np.ptp(ax.get_ylim()), 1e-300)
+    named: list[tuple[list[str], Array, str]] = []
+    for text, (curve, colour) in curves.items():
+        same = next((names for names, other, _ in named if abs(other - curve).max() < ALIKE * range_of_all), None)
+        if same is None:
+            named.append(([text], curve, colour))
+        else:
+            same.append(text)
+    for k, (names, curve, colour) in enumerate(named):
+        others = np.array([other for j, (_, other, _) in enumerate(named) if j != k]).reshape(-1, len(curve))
         gap = abs(others - curve).min(axis=0) if len(others) else np.ones(len(curve))
         inside = slice(len(gap) // 20, max(-len(gap) // 8, 1 - len(gap)))
         at = inside.start + int(np.argmax(gap[inside]))
         above = curve[at] >= others[:, at].max() if len(others) else True
-        place = {"va": "bottom" if above else "top", "color": color}
-        style.note(ax, text, (scene["time"][at], curve[at]), (3, 2 if above else -2), **place)
-    _scale(ax.yaxis, 5, values, 1e-3)
-    ax.margins(y=0.14)
+        place = {"va": "bottom" if above else "top", "color": colour}
+        style.note(ax, " = ".join(names), (scene["time"][at], curve[at]), (3, 2 if above else -2), **place)
     return marks
 
 
@@ -229,15 +302,15 @@ def _rates(scene: Scene) -> tuple[Array, Array, Array]:
     if scene.one_arc or scene.still:
         rows = np.argsort(scene["theta"])
         return scene["psi_dot"][rows], scene["phi_dot"][rows], np.zeros(len(rows), dtype=bool)
-    time, x, y = scene.smooth(SUBDIVISION, "time", "psi_dot", "phi_dot")
-    return x, y, scene.mode[scene.rows_at(time)] == 0
+    return scene["psi_dot"], scene["phi_dot"], scene.mode == 0
 
 
 def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
     """theta along the arc: at its start and ends, and at whole steps where there is room; their dots are drawn."""
     rows = np.argsort(scene["theta"])
     theta, x, y = (scene[name][rows] for name in ("theta", "psi_dot", "phi_dot"))
-    start, low, high = np.degrees([scene["theta"][0], theta[0], theta[-1]])
+    ends = -scene.peak(-scene["theta"])[1], scene.peak(scene["theta"])[1]
+    start, low, high = np.degrees([scene["theta"][0], *ends])
     named = {start: f"$\\theta = {start:.4g}°$, start"}
     named |= {at: f"{at:.1f}°, {end}" for at, end in ((low, "lowest"), (high, "highest")) if abs(at - start) > 0.05}
     texts, taken = {}, []

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces of the ground, slip.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces, and more where it tells.
 
-A guided wheel has speeds, slip ratio, forces and distance in their place. Reads free.csv (s = 0) and friction.csv
-(s > 0), which hold all that was set as columns: titles and captions come from there. The paper's two scenes make
-paper_diagrams, paper_path_and_ground and fig_1 ... fig_6; others make diagrams and diagram_NAME_SCENE, and leave those
-of the paper in place. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad, degrees beside.
+    python -m wheelfmu.diagrams.paper FOLDER [argument of ./scripts/run]...
+
+The motions are those of wheel.fmu with these arguments, without (s = 0) and with rolling friction, read densely;
+FOLDER/SCENE.error has how far they can be trusted. The paper's two scenes make paper_diagrams, paper_path_and_ground
+and fig_1 ... fig_6; others make diagrams and diagram_NAME_SCENE, with the panels that have content, and leave those of
+the paper in place. Of two scenes that look alike one is drawn. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad,
+degrees beside.
 """
 
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from multiprocessing import Pool
 from pathlib import Path
@@ -18,48 +21,122 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.textpath import TextPath
+from wheelfmu.truth.motion import Library
 
 from wheelfmu.diagrams import panels, style
-from wheelfmu.diagrams.scene import Scene, SceneError, read_scene
-from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, variables
+from wheelfmu.diagrams.reading import read
+from wheelfmu.diagrams.scene import Scene
+from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, values, variables
 
-RESULTS = ROOT / "results"
 SETTINGS = variables("parameter", "input")
 SOLVING = ("formulation", "method")  # the same motion by another system or solver
+SAID = {"m", "r_0", "r", *MOMENTS, "g", "s"}  # in every caption: the wheel, the start; the title has s
+SAID |= {f"{name}_start" for name in ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")}
 NO_BREAK = "\u00a0"  # a space at which no line ends
 MARGIN = 2.0  # mm beside a caption
 PITCH = 3.4  # mm from one line of a caption to the next
+ALIKE = 0.01  # of a quantity's range, on average over time: in two columns such curves look alike
+COMPARED = {"X_O": "m", "Y_O": "m", "X_C": "m", "Y_C": "m", "theta": "rad", "psi_dot": "rad/s", "phi_dot": "rad/s"}
+COMPARED |= dict.fromkeys(("lambda_x", "lambda_y", "lambda_3"), "N")
 FALL_BY_ROUNDING = "Rounding decides when and to which side an upright wheel tips; guided=true keeps it upright."
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One row of a sheet; height in mm in all; `draw` returns what the caption explains; `figures`: its numbers in
-    the paper, without and with friction."""
+    """One row of a sheet; height in mm in all; `draw` returns what the caption explains; `tells`: whether a scene has
+    content for it; `figures`: its numbers in the paper, without and with friction."""
 
     name: str
     subject: str
     height: float
     draw: Callable[[Axes, Scene], list[str]]
+    tells: Callable[[Scene], bool]
     figures: tuple[int, int] | None = None
 
 
+def free(scene: Scene) -> bool:
+    """Whether tilt or heading move by themselves."""
+    return not scene.guided and not scene.straight
+
+
+def steered(scene: Scene) -> bool:
+    """Whether a hub carrier changes tilt or heading."""
+    return scene.guided and not scene.straight
+
+
+def curved(scene: Scene) -> bool:
+    return bool(np.ptp(scene["psi"]) > 1e-6) or slides_across(scene)
+
+
+def turns(scene: Scene) -> bool:
+    """Whether its rates change by themselves."""
+    return free(scene) and not scene.still
+
+
+def tilts(scene: Scene) -> bool:
+    return bool(np.ptp(scene["theta"]) > 1e-6)
+
+
+def slows(scene: Scene) -> bool:
+    """Whether a wheel that keeps tilt and heading changes its speed."""
+    return scene.straight and bool(np.ptp(scene.speed) > 1e-6 * abs(scene.speed).max())
+
+
+def slides_along(scene: Scene) -> bool:
+    return bool(scene.slides.any() and abs(scene["slip_x"]).max() > 0.01 * scene.slip.max())
+
+
+def runs_apart(scene: Scene) -> bool:
+    """Whether speed and spin tell: it slows down straight ahead, or slides along."""
+    return not steered(scene) and (slows(scene) or slides_along(scene))
+
+
+def brakes(scene: Scene) -> bool:
+    """Whether it slides forward with less spin than rolling needs, so that a slip ratio says how much."""
+    least = -1e-6 * abs(scene.speed).max()
+    forward = min(scene.speed.min(), scene["slip_x"].min(), scene.rolling_speed.min()) >= least
+    return scene.straight and slides_along(scene) and bool(forward)
+
+
+def slides_across(scene: Scene) -> bool:
+    return bool(abs(scene["slip_y"]).max() > 1e-9 * max(scene.slip.max(), 1e-9))
+
+
+def pushes(scene: Scene) -> bool:
+    """Whether the ground's forces on a wheel that does not move by itself change, or come near their limit."""
+    weight = scene.value("m") * scene.value("g")
+    parts = np.array([scene[name] for name in ("lambda_x", "lambda_y", "lambda_3")])
+    limited = scene.value("mu_max") > 0 and abs(parts[:2]).max() > 1e-6 * weight
+    return not free(scene) and bool(limited or np.ptp(parts, axis=1).max() > 1e-6 * weight)
+
+
+def carries(scene: Scene) -> bool:
+    """Whether a hub carrier bears a moment."""
+    size = scene.value("m") * scene.value("g") * scene.value("r_0")
+    return scene.guided and max(abs(scene[name]).max() for name in ("M_guide_1", "M_guide_2")) > 1e-6 * size
+
+
+def straight(scene: Scene) -> bool:
+    return scene.straight
+
+
 PAPERS = (
-    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, (1, 4)),
-    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, (2, 5)),
-    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, (3, 6)),
+    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, free, (1, 4)),
+    Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, tilts, (2, 5)),
+    Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, turns, (3, 6)),
 )
 OTHERS = (
-    Panel("path", "Path of the contact point", 67.0, panels.draw_path),
-    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground),
+    Panel("path", "Path of the contact point", 67.0, panels.draw_path, curved),
+    Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground, free),
 )
-SLIDES = (Panel("slip", "Slip at the contact", 57.0, panels.draw_slip),)
-# A guided wheel's tilt and heading stay: in their place what a vehicle's engineer reads.
-SPEEDS = Panel("speeds", r"Speed $v$ and rolling speed $-R\,\omega_z$", 57.0, panels.draw_speeds)
-RATIO = Panel("slip_ratio", "Slip ratio", 50.0, panels.draw_slip_ratio)
-LOADS = (
-    Panel("forces", "Forces of the ground", 57.0, panels.draw_forces),
-    Panel("distance", "Distance travelled", 57.0, panels.draw_distance),
+DRIVEN = (  # what a vehicle's engineer reads
+    Panel("velocities", "Velocity of $O$ in the wheel's axes", 57.0, panels.draw_velocities, steered),
+    Panel("speeds", r"Speed and rolling speed", 57.0, panels.draw_speeds, runs_apart),
+    Panel("slip_ratio", "Slip ratio", 57.0, panels.draw_slip_ratio, brakes),
+    Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, slides_across),
+    Panel("forces", "Forces of the ground", 57.0, panels.draw_forces, pushes),
+    Panel("carrier", "Moment of the hub carrier", 57.0, panels.draw_carrier, carries),
+    Panel("distance", "Distance along the heading", 57.0, panels.draw_distance, straight),
 )
 
 
@@ -71,12 +148,21 @@ def set_otherwise(scene: Scene, names: Iterable[str]) -> list[str]:
 
 def unlike_paper(scene: Scene) -> list[str]:
     """All that was set otherwise than in (27)-(33), the start values of the description; the title has s."""
-    own = {name: scene.value(name) for name in SETTINGS if name not in ("s", *SOLVING)}
-    said = set_otherwise(scene, own)
-    rows = {} if scene.ending else {"stop_time": scene["time"][-1]}
-    rows["output_interval"] = scene["time"][1] - scene["time"][0]
-    said += [RUN[name].said(value) for name, value in rows.items() if abs(value - RUN[name].preset) > 1e-9]
-    said += ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
+    names = [name for name in SETTINGS if name not in ("s", *SOLVING)]
+    return [*set_otherwise(scene, names), *ended_otherwise(scene), *remarks_on(scene)]
+
+
+def ended_otherwise(scene: Scene) -> list[str]:
+    """Another length of the run than the description's."""
+    stop = scene["time"][-1]
+    other = not scene.ending and abs(stop - RUN["stop_time"].preset) > 1e-9
+    return [RUN["stop_time"].said(stop)] * bool(other)
+
+
+def remarks_on(scene: Scene) -> list[str]:
+    """On a wheel that cannot exist."""
+    own = {name: scene.value(name) for name in ("m", "r_0", "r", *MOMENTS)}
+    said = ["r > r_0, the torus intersects itself"] * (own["r"] > own["r_0"])
     return said + ["no mass within this outline has these moments of inertia"] * bool(doubt(own))
 
 
@@ -98,7 +184,21 @@ def is_paper(scenes: Sequence[Scene]) -> bool:
 def short(value: float) -> str:
     """Four digits, a power of ten as such."""
     mantissa, _, exponent = f"{value:.4g}".partition("e")
-    return rf"{mantissa}\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
+    return power(mantissa, exponent) if exponent else mantissa
+
+
+def power(mantissa: str, exponent: str) -> str:
+    return rf"{mantissa}\cdot 10^{{{int(exponent)}}}".removeprefix(r"1\cdot ")
+
+
+def typeset(text: str) -> str:
+    """Minus signs and powers of ten as such, outside of formulas."""
+
+    def plain(part: str) -> str:
+        part = re.sub(r"(?<![\w.])(-?[\d.]+)e([-+]\d+)", lambda found: f"${power(*found.groups())}$", part)
+        return re.sub(r"(?<![\w.])-(?=\d)", "\N{MINUS SIGN}", part)
+
+    return "".join(part if k % 2 else plain(part) for k, part in enumerate(re.split(r"(\$[^$]*\$)", text)))
 
 
 def wheel_of(scene: Scene) -> str:
@@ -113,14 +213,14 @@ def start_of(scene: Scene) -> str:
     """The start, (32) and (33), as the run had it."""
     angles = (("psi", r"\psi"), ("theta", r"\theta"), ("phi", r"\varphi"))
     turned = [rf"${symbol} = {np.degrees(scene.value(f'{name}_start')):.5g}°$" for name, symbol in angles]
-    rates = [rf"$\dot{symbol} = {scene.value(f'{name}_dot_start'):.4g}$" for name, symbol in angles]
-    place = [rf"${axis}_O = {scene.value(f'{axis}_O_start'):.4g}$" for axis in "XY"]
+    rates = [rf"$\dot{symbol} = {short(scene.value(f'{name}_dot_start'))}$" for name, symbol in angles]
+    place = [rf"${axis}_O = {short(scene.value(f'{axis}_O_start'))}$" for axis in "XY"]
     return f"At $t = 0$: {', '.join(turned)}; {', '.join(rates)}{NO_BREAK}rad/s; {', '.join(place)}{NO_BREAK}m"
 
 
 def title_of(scene: Scene) -> str:
     s = scene.value("s")
-    return rf"Rolling friction, $s = {s:.4g}$ m" if s > 0 else r"No rolling friction, $s = 0$"
+    return rf"Rolling friction, $s = {short(s)}$ m" if s > 0 else r"No rolling friction, $s = 0$"
 
 
 def fate_of(scene: Scene) -> list[str]:
@@ -130,12 +230,21 @@ def fate_of(scene: Scene) -> list[str]:
     said = [f"{count or 'no'} transition{'s' * (count != 1)} in {scene['time'][-1]:.3g} s"]
     said *= scene.resisted or can_slide
     often = ("", "once", "twice")[slides] if slides < 3 else f"{slides} times"
-    fastest = f"it slides {often}, at up to {scene.slip.max():.3g} m/s"
+    fastest = f"it slides {often}, at up to {scene.peak(scene.slip)[1]:.4g} m/s"
     said += [fastest if slides else "it never slides"] * can_slide
-    said += [] if scene.rest is None else [f"it stands from {scene.rest:.3g} s on"]
+    said += [] if scene.rest is None else [f"it stands from {scene.rest:.4g} s on"]
     said += [f"the wheel {scene.ending}, where the run ends"] * bool(scene.ending)
     said += ["rounding alone tips it and decides time and side; guided=true keeps it upright"] * scene.by_rounding
-    return said + [scene.trust] * bool(scene.trust)
+    return said + [scene.trust] * bool(scene.trust) + [scene.alone] * bool(scene.alone)
+
+
+def kept(scene: Scene, drawn: Sequence[Panel]) -> list[str]:
+    """A clause with forces that keep their values, of which no panel is drawn."""
+    if {"ground", "forces"} & {panel.name for panel in drawn} or free(scene) or pushes(scene):
+        return []
+    mu = scene["mu_required"][0]
+    needs = rf", and rolling needs $\mu = {short(mu)}$" * bool(mu > 1e-9)
+    return [rf"throughout $N = {short(scene['lambda_3'][0])}$ N{needs}"]
 
 
 def paragraph(clauses: Sequence[str], subject: str = "") -> str:
@@ -146,18 +255,19 @@ def paragraph(clauses: Sequence[str], subject: str = "") -> str:
 
 
 def caption(scenes: Sequence[Scene], remarks: Sequence[Sequence[str]], width: float, size: float) -> list[str]:
-    """The parameters, all that is not the paper's, each scene's fate, and the remarks, those on all scenes once; lines
-    of at most `width` mm."""
+    """The parameters, all else that is not the paper's, each scene's fate, and the remarks, those on all scenes once;
+    lines of at most `width` mm."""
     texts = [f"Parameters: {wheel_of(scenes[-1])}. {start_of(scenes[-1])}."]
-    if other := unlike_paper(scenes[-1]):
-        texts.append(f"Unlike the paper: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
+    names = [name for name in SETTINGS if name not in SAID | {*SOLVING}]
+    if other := [*set_otherwise(scenes[-1], names), *ended_otherwise(scenes[-1]), *remarks_on(scenes[-1])]:
+        texts.append(f"Further: {', '.join(said.replace(' ', NO_BREAK) for said in other)}.")
     if solving := set_otherwise(scenes[-1], SOLVING):
         texts.append(f"Computed with {', '.join(said.replace(' ', NO_BREAK) for said in solving)}.")
     shared = [one for one in dict.fromkeys(remarks[0]) if all(one in said for said in remarks)]
     for scene, said in zip(scenes, remarks, strict=True):
         own = [one for one in dict.fromkeys(said) if one not in shared]
         texts.append(paragraph([*fate_of(scene), *own], title_of(scene).split(",")[0] if len(scenes) > 1 else ""))
-    return [line for text in [*texts, paragraph(shared)] if text for line in wrapped(text, width, size)]
+    return [line for text in [*texts, paragraph(shared)] if text for line in wrapped(typeset(text), width, size)]
 
 
 @cache
@@ -178,27 +288,42 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
 
 
 def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: bool) -> list[Path]:
-    """A sheet: a row per panel, a column per scene; one panel of one scene is a journal column wide."""
-    sheet, heights = len(scenes) > 1, [panel.height for panel in drawn]
-    fig = style.figure_mm(style.PAGE if sheet else style.COLUMN, sum(heights) + 9.0 * sheet)
-    axes = fig.subplots(len(drawn), len(scenes), squeeze=False, height_ratios=heights)
-    rates, remarks = [], [[] for _ in scenes]
-    for row, panel in zip(axes, drawn, strict=True):
-        for ax, scene, said in zip(row, scenes, remarks, strict=True):
-            said += panel.draw(ax, scene.moving)
-            number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
-            title = rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
-            ax.set_title(title if sheet else f"{title}, {title_of(scene).lower()}", loc="left", fontsize=9)
-            if sheet and panel is drawn[0]:
-                style.note(ax, title_of(scene), (0, 1), (0, 24), xycoords="axes fraction", fontsize=10.5)
-            rates += [(ax, scene)] * (panel.draw is panels.draw_rates)
-    (width, height), size = fig.get_size_inches(), 7.5 if sheet else 7.0
+    """A sheet: of two scenes a row per panel, of one its panels in pairs; one panel alone is a journal column wide."""
+    two, alone = len(scenes) > 1, len(scenes) == len(drawn) == 1
+    cells = [(panel, k) for panel in drawn for k in range(len(scenes))]
+    columns = 1 if alone else 2
+    rows = [cells[k : k + columns] for k in range(0, len(cells), columns)]
+    heights = [max(panel.height for panel, _ in row) for row in rows]
+    fig = style.figure_mm(style.COLUMN if alone else style.PAGE, sum(heights) + 9.0 * (not alone))
+    axes = fig.subplots(len(rows), columns, squeeze=False, height_ratios=heights)
+    rates, remarks = [], [kept(scene, drawn) for scene in scenes]
+    for ax, (panel, k) in zip(axes.flat, cells, strict=False):
+        scene = scenes[k]
+        remarks[k] += panel.draw(ax, scene.moving)
+        number = panel.figures[scene.value("s") > 0] if paper and panel.figures else 0
+        title = rf"$\mathbf{{Fig.\,{number}}}$   {panel.subject}" if number else panel.subject
+        ax.set_title(f"{title}, {title_of(scene).lower()}" if alone else title, loc="left", fontsize=9)
+        if not alone and panel is drawn[0]:
+            style.note(ax, title_of(scene), (0, 1), (0, 24), xycoords="axes fraction", fontsize=10.5)
+        rates += [(ax, scene)] * (panel.draw is panels.draw_rates)
+    for ax in axes.flat[len(cells) :]:
+        ax.remove()
+    for panel, (left, right) in zip(drawn, axes, strict=True) if two else ():
+        if panel in DRIVEN:
+            limits = np.array([left.get_ylim(), right.get_ylim()])
+            for ax in (left, right):
+                ax.set_ylim(limits[:, 0].min(), limits[:, 1].max())
+    (width, height), size = fig.get_size_inches(), 7.0 if alone else 7.5
     lines = caption(scenes, remarks, width / style.MM - 2 * MARGIN, size)
     foot = (3.0 + PITCH * len(lines)) * style.MM
     fig.set_size_inches(width, height + foot)
     fig.set_layout_engine("constrained", rect=(0, foot / (height + foot), 1, height / (height + foot)))
     fig.get_layout_engine().execute(fig)
     fig.set_layout_engine("none")  # the texts beside a curve need the places of the panels
+    for ax in fig.axes:
+        if ax.get_aspect() == 1:  # anew from the data: limits of another width would be kept if they are nearly right
+            ax.autoscale_view()
+            ax.apply_aspect()
     for ax, scene in rates:
         panels.write_rates(ax, scene.moving)
     for i, line in enumerate(reversed(lines)):
@@ -207,53 +332,78 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     return style.save(fig, stem)
 
 
-def panels_of(scenes: Sequence[Scene]) -> tuple[tuple[Panel, ...], tuple[Panel, ...]]:
-    """Of runs that are not the paper's: the first ones, and those that follow on the same sheet."""
-    slides = any(scene.slides.any() for scene in scenes)
-    across = any(abs(scene["slip_y"]).max() > 1e-9 * scene.slip.max() for scene in scenes)
-    if not scenes[0].guided:
-        return PAPERS, OTHERS + SLIDES * slides
-    return (SPEEDS, *[RATIO] * slides), LOADS + OTHERS[:1] * across
+def panels_of(scenes: Sequence[Scene]) -> tuple[Panel, ...]:
+    """Of runs that are not the paper's: those with content in one of the scenes."""
+    told = tuple(panel for panel in PAPERS + OTHERS + DRIVEN if any(panel.tells(scene.moving) for scene in scenes))
+    return told or DRIVEN[-1:]
+
+
+def alike(one: Scene, other: Scene) -> bool:
+    """Whether two scenes cannot be told apart in two columns of diagrams."""
+    ends = one["time"][-1], other["time"][-1]
+    if bool(one.ending) != bool(other.ending) or abs(ends[0] - ends[1]) > ALIKE * max(ends):
+        return False
+    at, (m, r_0, g) = np.linspace(0.0, min(ends), 2000), (one.value(name) for name in ("m", "r_0", "g"))
+    scales = {"m": r_0, "rad": 1.0, "rad/s": np.sqrt(g / r_0), "N": m * g}
+    for name, unit in COMPARED.items():
+        a, b = (np.interp(at, scene["time"], scene[name]) for scene in (one, other))
+        if abs(a - b).mean() > ALIKE * max(np.ptp(a), np.ptp(b)) + 1e-6 * scales[unit]:
+            return False
+    return True
 
 
 def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
-    first, others = panels_of(scenes)
-    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": first + others}
+    if not paper and len(scenes) == 2 and alike(*scenes):
+        scenes = [replace(scenes[1], alone="without it the diagrams look alike")]
+    every = PAPERS if paper else panels_of(scenes)
+    sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": every}
     wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
     for scene in scenes:
         friction = int(scene.value("s") > 0)
-        for panel in first + others * (not paper):
+        for panel in every:
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
             wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
     return wanted
 
 
-def main(folder: Path = RESULTS) -> None:
-    """Draw everything in a folder, or the one scene that has a motion, and print a line of the pictures; else one line
-    on stderr and exit status 1."""
+def scenes_of(folder: Path, given: dict[str, str], fmu: Path) -> list[Scene]:
+    """Both motions of ./scripts/run, with the words of diagrams.races in the folder."""
+    given = {name: text for name, text in given.items() if name != "error"}
+    stop = float(given.pop("stop_time", RUN["stop_time"].start))
+    given.pop("output_interval", "")
+    start = {"s": PAPER_S} | {name: SETTINGS[name].number_of(text) for name, text in given.items()}
+    library = Library.unpacked(fmu)
+    scenes = [read(library, "free", start | {"s": 0.0}, stop), read(library, "friction", start, stop)]
+    library.remove()
+    trusted = {scene.name: folder / f"{scene.name}.error" for scene in scenes}
+    words = {name: file.read_text(encoding="utf-8").splitlines()[1] for name, file in trusted.items() if file.exists()}
+    return [replace(scene, trust=words.get(scene.name, "")) for scene in scenes]
+
+
+def main(folder: Path, given: dict[str, str], fmu: Path = ROOT / "wheel.fmu") -> None:
+    """Draw everything into a folder, or the one scene that has a motion, and print a line of the pictures; else one
+    line on stderr and exit status 1."""
     style.use_style()
-    scenes, faults = [], []
-    for name in ("free", "friction"):
-        try:
-            scenes.append(read_scene(folder / f"{name}.csv"))
-        except SceneError as fault:
-            faults.append(str(fault))
-    try:
-        if not scenes:
-            raise SceneError("Neither scene has a motion to draw.")
-        with Pool() as processes:
-            drawn = processes.starmap(draw, wanted := pictures(scenes, folder), chunksize=1)
-        sheets = sum(len(panels) > 1 for _, _, panels, _ in wanted)
-        names = [png.name for _, png in drawn]
-        ends = [*names[sheets:][:1], *names[sheets:][-1:]]
-        print(f"{', '.join(names[:sheets])}, and panel by panel {' to '.join(ends)}; each also as .svg.")
-        for warning in [*warnings_of(scenes), *faults]:
-            print(f"run: warning: {warning}", file=sys.stderr)
-    except SceneError as fault:
-        sys.exit(f"run: {fault}")
+    both = scenes_of(folder, given, fmu)
+    scenes = [scene for scene in both if np.ptp(scene["time"]) > 0]
+    if not scenes:
+        sys.exit("run: Neither scene has a motion to draw.")
+    with Pool() as processes:
+        drawn = processes.starmap(draw, wanted := pictures(scenes, folder), chunksize=1)
+    sheets = sum(len(panels) > 1 or len(shown) > 1 for _, shown, panels, _ in wanted)
+    names = [png.name for _, png in drawn]
+    ends = [*names[sheets:][:1], *names[sheets:][-1:]]
+    print(f"{', '.join(names[:sheets])}, and panel by panel {' to '.join(ends)}; each also as .svg.")
+    for warning in [*warnings_of(scenes), *(still(scene) for scene in both if np.ptp(scene["time"]) <= 0)]:
+        print(f"run: warning: {warning}", file=sys.stderr)
+
+
+def still(scene: Scene) -> str:
+    why = (scene.ending or "stands at one instant").replace("$", "")
+    return f'The scene "{scene.name}" has no motion to draw: the wheel {why}.'
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    main(Path(sys.argv[1]), values(sys.argv[2:]))

@@ -1,67 +1,59 @@
-"""One simulated scene as `fmpy simulate` writes it: a CSV file with a named column per variable.
+"""One motion as the pictures show it: a column per variable, dense in time, with a row at the instant of each event.
 
 Names and units are those of the model's variables: SI, fixed axes X, Y, Z, Z up; angles in rad.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
 
 Array = NDArray[np.float64]
 ARC = 0.03  # of their range: how far the rates may leave the line between the rows next in the order of the tilt
 STILL = 1e-7  # rad/s: less is rounding
-
-
-class SceneError(Exception):
-    """A file cannot be drawn; the message is one sentence for the user."""
+APART = 1e-9  # of the run: instants closer than this are one
 
 
 @dataclass(frozen=True)
 class Scene:
-    """The columns of one simulation, one row per communication point."""
+    """name: free or friction; settings: parameters and inputs, which keep their values; instants: in s, of the events
+    that the wheel logged; transitions: their number; ending: what ended the run before its time, as `lies flat at
+    $t$ = 0.5928 s`; trust: how far it can be trusted, of diagrams.races; alone: why no other is drawn beside it."""
 
-    path: Path
+    name: str
     columns: Mapping[str, Array]
+    settings: Mapping[str, float]
+    instants: tuple[float, ...] = ()
+    transitions: int = 0
+    ending: str = ""
+    trust: str = ""
+    alone: str = ""
 
     def __getitem__(self, name: str) -> Array:
-        if name not in self.columns:
-            raise SceneError(f"{self.path} lacks the column {name}.")
         return self.columns[name]
 
-    @cached_property
-    def ending(self) -> str:
-        """What ended the run before its time, such as `lies flat at t = 0.593 s`: from the log beside the table."""
-        log = self.path.with_suffix(".log")
-        said = re.search(r"The wheel (.+?) at t = (\S+) s", log.read_text(encoding="utf-8")) if log.exists() else None
-        return f"{said[1]} at $t$ = {float(said[2]):.3g} s" if said else ""
-
-    @property
-    def trust(self) -> str:
-        """How far it can be trusted, of diagrams.races: from the file beside the table."""
-        file = self.path.with_suffix(".error")
-        return file.read_text(encoding="utf-8").splitlines()[1] if file.exists() else ""
-
     def value(self, name: str) -> float:
-        """A parameter of the run, which the file holds as a column of equal numbers."""
-        return float(self[name][0])
+        """A parameter or input of the run."""
+        return self.settings[name]
 
     @property
     def resisted(self) -> bool:
         """Whether friction or a brake acts about the axle."""
         return self.value("s") > 0 or self.value("M_brake") > 0
 
-    @property
+    @cached_property
     def edges(self) -> Array:
-        """Instants in s between which a row's friction mode is drawn: half-way to the rows beside it."""
-        return np.concatenate([self["time"][:1], (self["time"][:-1] + self["time"][1:]) / 2, self["time"][-1:]])
+        """Instants in s between which a row's modes hold: those of events, else half-way to the rows beside it."""
+        time, instants = self["time"], np.array(self.instants)
+        middle = (time[:-1] + time[1:]) / 2
+        for beside in (np.searchsorted(time, instants + s * APART * np.ptp(time)) for s in (-1, 1)):
+            there = (beside > 0) & (beside < len(time))  # the row of an event has the modes before it or after it
+            middle[beside[there] - 1] = instants[there]
+        return np.concatenate([time[:1], middle, time[-1:]])
 
     @property
     def mode(self) -> Array:
@@ -84,23 +76,35 @@ class Scene:
         return self.edges[1:-1][self.slides[:-1] != self.slides[1:]]
 
     @property
-    def transitions(self) -> int:
-        """How often friction or brake hold, release or reverse the spin, or the wheel starts or stops sliding."""
-        return int(self["n_events"][-1])
-
-    @property
     def rest(self) -> float | None:
         """The instant in s from which it stands, after it has moved; None if there is none."""
         moves = self.slides | (np.abs([self["phi_dot"], self["psi_dot"]]).max(axis=0) > STILL)
         moves |= abs(self["theta"] - self["theta"][-1]) > STILL
-        last = int(np.flatnonzero(moves)[-1]) if moves.any() else len(moves)
-        return float(self["time"][last + 1]) if last < len(moves) - 2 else None
+        last, time = int(np.flatnonzero(moves)[-1]) if moves.any() else len(moves), self["time"]
+        if last >= len(moves) - 2:
+            return None
+        slack = APART * np.ptp(time)
+        stops = [t for t in self.instants if time[last] - slack <= t <= time[last + 1] + slack]
+        return stops[0] if stops else float(time[last + 1])
 
     @property
     def moving(self) -> Scene:
         """Its rows until a little after it has come to rest."""
-        shown = self["time"] <= (np.inf if self.rest is None else 1.1 * self.rest)
-        return Scene(self.path, {name: column[shown] for name, column in self.columns.items()})
+        end = np.inf if self.rest is None else 1.1 * self.rest
+        shown, instants = self["time"] <= end, tuple(t for t in self.instants if t <= end)
+        return replace(self, columns={name: x[shown] for name, x in self.columns.items()}, instants=instants)
+
+    def peak(self, values: Array) -> tuple[float, float]:
+        """Instant in s and value of the largest of a column: by the parabola through the rows about it, but at an end
+        or an event the row itself."""
+        time, k = self["time"], int(np.nanargmax(values))
+        around = slice(max(k - 1, 0), k + 2)
+        t, x = time[around] - time[k], values[around]
+        kink = any(time[around][0] <= instant <= time[around][-1] for instant in self.instants)
+        if kink or len(t) < 3 or not np.isfinite(x).all() or np.ptp(x) == 0:
+            return float(time[k]), float(values[k])
+        a, b, c = np.polyfit(t / np.ptp(t), x - x[1], 2)
+        return float(time[k] - b / (2 * a) * np.ptp(t)), float(x[1] + c - b * b / (4 * a))
 
     @property
     def by_rounding(self) -> bool:
@@ -125,6 +129,17 @@ class Scene:
         return self["X_O_dot"] * np.cos(psi) + self["Y_O_dot"] * np.sin(psi)
 
     @property
+    def sideways(self) -> Array:
+        """The velocity of O to the left of e1 in m/s."""
+        psi = self["psi"]
+        return self["Y_O_dot"] * np.cos(psi) - self["X_O_dot"] * np.sin(psi)
+
+    @property
+    def straight(self) -> bool:
+        """Whether tilt and heading keep their values."""
+        return bool(max(np.ptp(self["theta"]), np.ptp(self["psi"])) <= STILL)
+
+    @property
     def rolling_speed(self) -> Array:
         """The speed in m/s at which the wheel would not slip along e1: of a guided wheel R |omega_z|."""
         return self.speed - self["slip_x"]
@@ -134,10 +149,6 @@ class Scene:
         """kappa = -slip_x / v, braking negative; nan where the wheel stands."""
         still = abs(self.speed) < 1e-6 * abs(self.speed).max(initial=1e-300)
         return np.divide(-self["slip_x"], self.speed, out=np.full(len(still), np.nan), where=~still)
-
-    def rows_at(self, time: Array) -> NDArray[np.int64]:
-        """The row next to each instant."""
-        return np.searchsorted(self.edges[1:-1], time)
 
     @property
     def one_arc(self) -> bool:
@@ -151,25 +162,3 @@ class Scene:
     def still(self) -> bool:
         """Whether the rates keep their values."""
         return bool(max(np.ptp(self["psi_dot"]), np.ptp(self["phi_dot"])) <= STILL)
-
-    def smooth(self, subdivision: int, *names: str) -> tuple[Array, ...]:
-        """Columns with points between the rows, for curves that turn sharply.
-
-        Akima's cubic is local: a kink at a transition rings nowhere else.
-        """
-        rows = np.arange(len(self["time"]))
-        fine = np.linspace(0, rows[-1], rows[-1] * subdivision + 1)
-        return tuple(Akima1DInterpolator(rows, self[name])(fine) for name in names)
-
-
-def read_scene(path: Path) -> Scene:
-    """Read a CSV file."""
-    try:
-        table = np.genfromtxt(path, delimiter=",", names=True, dtype=None, ndmin=1, encoding="utf-8")
-    except (OSError, ValueError) as fault:
-        raise SceneError(f"{path} cannot be read as a table ({fault}): simulate first.") from fault
-    scene = Scene(path, {name: table[name].astype(float) for name in table.dtype.names})
-    if np.ptp(scene["time"]) <= 0:
-        why = (scene.ending or "stands at one instant").replace("$", "")
-        raise SceneError(f'The scene "{path.stem}" has no motion to draw: the wheel {why}.')
-    return scene

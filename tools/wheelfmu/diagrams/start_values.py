@@ -18,6 +18,7 @@ from wheelfmu.fmu.values import (
     Variable,
     bodies,
     formula,
+    interval,
     moments,
     preset,
     refusal,
@@ -89,7 +90,7 @@ def values(arguments: list[str]) -> dict[str, str]:
     given = {name: takes[name].value_of(text) for name, text in given.items()}
     if wheel:
         body = preset(wheel)
-        body |= {"s": PAPER_S * scale(body, m=1), "output_interval": 0.01 / max(1, round(scale(body, s=-1)))}
+        body |= {"s": PAPER_S * scale(body, m=1)}
         body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
         found = {name: repr(value) for name, value in (body | thrown(wheel)).items()}
     if solid and (both := [name for name in MOMENTS if name in given]):
@@ -103,9 +104,12 @@ def values(arguments: list[str]) -> dict[str, str]:
     own = {name: takes[name].number_of(found.get(name, v.start)) for name, v in variables("parameter").items()}
     if fault := refusal(own):
         raise Fault(fault)
-    stop, interval = (float(found.get(name, v.start)) for name, v in RUN.items())
-    if interval > stop / 2:
-        raise Fault(f"output_interval = {interval:g} s is too long: at least two have to fit into the {stop:g} s.")
+    if "output_interval" not in found:
+        longest = float(RUN["output_interval"].start) * min(1.0, scale(own, s=1))
+        found["output_interval"] = repr(interval(own, longest))
+    stop, apart = (float(found.get(name, v.start)) for name, v in RUN.items())
+    if apart > stop / 2:
+        raise Fault(f"output_interval = {apart:g} s is too long: at least two have to fit into the {stop:g} s.")
     return found
 
 

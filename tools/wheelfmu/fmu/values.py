@@ -36,6 +36,7 @@ EXAMPLES = ROOT / "examples"
 WHEELS, BODIES = EXAMPLES / "wheels.json", EXAMPLES / "bodies.json"
 MOMENTS = ("J_x", "J_y", "J_z")
 UPRIGHT = {"psi_start": 0.0, "theta_start": math.pi / 2, "X_O_start": 0.0, "Y_O_start": 0.0}  # a vehicle's, along X
+POINTS = 40  # rows in the fastest period of spin and nutation
 HUB = 0.1  # of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube, root mean square
 ROUNDING = 1e-9  # of a moment: an excess that is no fault
 # What wheel.fmu refuses at a start though each value is within its limits: parameters, condition, its message.
@@ -279,6 +280,25 @@ def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> flo
     Under the same gravity a wheel of the same shape then moves alike: times are in proportion to sqrt(R).
     """
     return (body["m"] / 20) ** kg * ((body["r_0"] + body["r"]) / 0.35) ** (m + s / 2)
+
+
+def nutation(body: Mapping[str, float], spin: float) -> float:
+    """The rate in rad/s at which a wheel of this spin nods: that of fast upright rolling; 0 on a hub carrier."""
+    m, r_0, r, J_x, J_y, J_z = (body[name] for name in ("m", "r_0", "r", *MOMENTS))
+    J, R2 = min(J_x, J_y), (r_0 + r) ** 2
+    free = not body.get("guided", 0.0)
+    return free * abs(spin) * math.sqrt(J_z * (J_z + m * R2) / (J * (J + m * R2)))
+
+
+def interval(own: Mapping[str, float], longest: float) -> float:
+    """s between rows: 1, 2 or 5 of a power of ten, at most `longest`, with POINTS in the start's fastest period,
+    of spin or nutation."""
+    phi_dot, psi_dot = own["phi_dot_start"], own["psi_dot_start"]
+    omega_z = phi_dot + psi_dot * math.cos(own["theta_start"])
+    rate = max(abs(phi_dot), nutation(own, max(abs(omega_z), abs(psi_dot))), 1e-300)
+    wanted = min(longest, 2 * math.pi / (POINTS * rate))
+    power = 10.0 ** math.floor(math.log10(wanted) + 1e-9)
+    return float(f"{max(k for k in (1, 2, 5) if k * power <= wanted * (1 + 1e-9)) * power:.1g}")
 
 
 def spin(v: float, r_0: float, r: float, theta: float = math.pi / 2, psi_dot: float = 0.0) -> float:
