@@ -40,5 +40,12 @@ export function watchTheme(changed) {
     apply();
   });
   dark.addEventListener('change', apply);
+  addEventListener('message', ({source, data}) => {  // of a page that shows this one, and has a button itself
+    const asked = THEMES.findIndex(([name]) => name === data?.theme);
+    if (source !== parent || asked < 1) return;
+    choice = asked;
+    button.hidden = true;
+    apply();
+  });
   apply();
 }

@@ -7,6 +7,7 @@ docs/decisions/package.md: why it is made like this.
 
 from __future__ import annotations
 
+import json
 import re
 from importlib.resources import files
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Any
 import latex2mathml.converter
 from docutils import nodes
 from fontTools import subset
+from lxml import html
 from PIL import Image
 from sphinx.application import Sphinx
 
@@ -40,15 +42,15 @@ suppress_warnings += ["myst.xref_missing"] * any(not (ROOT / part).exists() for 
 html_theme = "furo"
 html_title = f"wheel.fmu {release}"
 html_favicon = "../../../../fmu-src/archive/model.png"
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "search.js"]
 html_css_files = ["site.css"]
 html_copy_source = False
-html_show_search_summary = False  # a browser fetches no pages for it without a server
 html_show_sphinx = False
 templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
 html_math_renderer = "mathml"
 
+WHITE = (255, 255, 255)
 PANELS = 1.7  # width over height, from which on a picture has panels side by side
 
 # A letter with a subscript in prose, such as r_0, X_O, ω_crit, 1/m_1, and no part of a path; a name of a variable
@@ -56,7 +58,7 @@ PANELS = 1.7  # width over height, from which on a picture has panels side by si
 SYMBOL = re.compile(r"(?<![\w.'])(?<![a-z]{2}/)([A-Za-zα-ωΑ-Ω])(\u0307?)_(\w+)")
 ALIGNED = {"aligned": "split"}  # environments that latex2mathml lacks, and its own of the same layout
 # Letters, digits and punctuation; accents, Greek, arrows, operators, brackets, and the italic letters of formulas.
-GLYPHS = "U+20-7E,U+A0-FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
+GLYPHS = "U+20-7E,U+A0-FF,U+2B0-2FF,U+300-36F,U+370-3FF,U+2000-206F,U+2100-23FF,U+27C0-27FF,U+2A00-2AFF,U+1D400-1D7FF"
 KEPT = (nodes.literal, nodes.literal_block, nodes.raw, nodes.math, nodes.math_block, nodes.comment)
 BAR = '<mo stretchy="false">&#x0007C;</mo>'
 THIN = '<mspace width="0.17em"/>'
@@ -114,13 +116,16 @@ def set_symbols(app: Sphinx, document: nodes.document) -> None:
 
 
 def widen(app: Sphinx, document: nodes.document) -> None:
-    """Marks pictures with panels side by side, and cells of prose, which a table must not squeeze beside names that
-    cannot be broken."""
+    """Marks pictures with panels side by side, drawings on white, which turn dark with the page, and cells of prose,
+    which a table must not squeeze beside names that cannot be broken."""
     for image in document.findall(nodes.image):
         path = Path(app.srcdir) / image["uri"]
         if path.suffix == ".png" and path.is_file():
-            width, height = Image.open(path).size
+            picture = Image.open(path).convert("RGB")
+            width, height = picture.size
             image["classes"] += ["panels"] * (width > PANELS * height)
+            image["classes"] += ["drawn"] * (picture.getpixel((0, 0)) == picture.getpixel((0, height - 1)) == WHITE)
+        image["classes"] += ["drawn"] * (path.suffix == ".svg")
     for cell in document.findall(nodes.entry):
         if len(cell.astext()) > 45:
             cell["classes"].append("prose")
@@ -133,6 +138,22 @@ def bring_font(app: Sphinx, fault: Exception | None) -> None:
         made = Path(app.outdir) / "_static" / "math.woff"
         options = ["--layout-features=*", "--flavor=woff", f"--unicodes={GLYPHS}", "--name-IDs=*"]
         subset.main([str(font), f"--output-file={made}", *options])
+
+
+def gather_texts(app: Sphinx, fault: Exception | None) -> None:
+    """The words of every page by section, for the search: a page that is opened from a disk may fetch no other."""
+    texts = {}
+    for page in [] if fault else sorted(Path(app.outdir).rglob("*.html")):
+        for main in html.fromstring(page.read_bytes()).xpath("//*[@role='main']"):
+            for part in main.xpath(".//script | .//style | .//a[contains(@class, 'headerlink')]"):
+                part.drop_tree()
+            for part in [*main.iterdescendants()]:
+                if part.tag != "section":
+                    part.drop_tag()
+            texts[page.relative_to(app.outdir).as_posix()] = html.tostring(main, encoding="unicode", with_tail=False)
+    if texts:
+        words = json.dumps({name: re.sub(r"\s+", " ", text) for name, text in texts.items()}, ensure_ascii=False)
+        (Path(app.outdir) / "_static" / "texts.js").write_text(f"const TEXTS = {words};\n", encoding="utf-8")
 
 
 def make_accessible(app: Sphinx, fault: Exception | None) -> None:
@@ -149,5 +170,6 @@ def setup(app: Sphinx) -> None:
     app.connect("doctree-read", widen)
     app.connect("doctree-read", set_symbols)
     app.connect("build-finished", bring_font)
+    app.connect("build-finished", gather_texts)
     app.connect("build-finished", make_accessible)
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))
