@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from wheelfmu.fmu import values
 from support.bounds import beyond, relative_error, within
-from wheelfmu.truth.closed_forms import upright_stiffness
-from wheelfmu.truth.motion import Library
-from wheelfmu.fmu.paths import build_folder
-from wheelfmu.truth.scenes import PAPER
 
 from wheelfmu.diagrams import paper, reading
+from wheelfmu.fmu import values
+from wheelfmu.fmu.paths import build_folder
+from wheelfmu.truth.closed_forms import upright_stiffness
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import PAPER
 
 UPRIGHT = {"theta_start": np.pi / 2, "psi_start": 0.0}
 LOCKED = UPRIGHT | {"guided": 1, "phi_dot_start": -20.0, "M_brake": 400.0, "mu_max": 0.5, "mu_slide": 0.4, "s": 0.0}

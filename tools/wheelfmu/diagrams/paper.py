@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.textpath import TextPath
-from wheelfmu.truth.motion import Library
 
 from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
 from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, values, variables
+from wheelfmu.truth.motion import Library
 
 SETTINGS = variables("parameter", "input")
 SOLVING = ("formulation", "method")  # the same motion by another system or solver

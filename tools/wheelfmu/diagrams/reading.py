@@ -6,11 +6,11 @@ import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from wheelfmu.truth.motion import Library, Run
-from wheelfmu.fmu.values import POINTS, nutation
 
 from wheelfmu.diagrams.scene import APART, Array, Scene
 from wheelfmu.diagrams.start_values import variables
+from wheelfmu.fmu.values import POINTS, nutation
+from wheelfmu.truth.motion import Library, Run
 
 READ = ["X_O", "Y_O", "X_C", "Y_C", "X_O_dot", "Y_O_dot", "psi", "theta", "psi_dot", "phi_dot", "omega_z"]
 READ += ["lambda_x", "lambda_y", "lambda_3", "mu_required", "slip_x", "slip_y", "contact_mode", "friction_mode"]

@@ -95,7 +95,16 @@ class Measure(NamedTuple):
             return t[k - 1] + (self.limit - x[k - 1]) / (x[k] - x[k - 1]) * (t[k] - t[k - 1])
         if self.kind == "mean":
             return ((t[1:] - t[:-1]) * (x[1:] + x[:-1]) / 2).sum() / (t[-1] - t[0]) if len(t) > 1 else x[-1]
-        return x if self.kind == "last" else getattr(x, self.kind)()
+        return x if self.kind == "last" else self.extreme(x)
+
+    def extreme(self, x: Any) -> float:
+        """The least or largest, by a parabola between the samples where their second differences show a smooth turn."""
+        k = getattr(x, f"arg{self.kind}")()
+        if 2 <= k < len(x) - 3:  # the last sample, the end of a run, has another distance
+            before, bend, after = (x[j - 1] - 2 * x[j] + x[j + 1] for j in (k - 1, k, k + 1))
+            if bend and all(0.5 < beside / bend < 2 for beside in (before, after)):
+                return x[k] - (x[k + 1] - x[k - 1]) ** 2 / (8 * bend)
+        return x[k]
 
 
 MEASURE = re.compile(r"(\w+)|(min|max|mean)\((\w+)\)|first\((\w+)([<>])([-+]?\.?\d.*)\)")
@@ -190,7 +199,7 @@ class Study:
     values      name -> value, the same for all wheels; a name that is missing keeps the FMU's default
     measures    name of a result -> text, as above
     history     Real variables kept at every communication point
-    interval    s between communication points, at which min, max, mean, first and the history are evaluated
+    interval    s between communication points, from which min, max, mean, first and the history follow
     body        `torus`, `disc` or `hoop` (examples/bodies.json): J_x, J_y, J_z follow from m, r_0 and r of each wheel
     branch_at   s; until then tunable parameters and inputs of the grid keep their values of `values`: runs that differ
                 in nothing else share one start, which a worker runs once and restores from a snapshot
