@@ -158,10 +158,11 @@ void guide(Matrix9& K, Vector9& column) {
   column.segment<2>(3).setZero();
 }
 
-// Solution of (24) and the moment of ground and brake about the axle.
+// Solution of (24) and the moment of ground and brake about the axle. The determinant of a wheel that slides, if held
+// times what a unit of tau adds to omega_z_dot, is that without sliding friction times WheelSlip.room.
 struct Solution {
   Vector9 unknowns;  // q_ddot, lambda
-  double tau;
+  double tau, determinant;
 };
 
 // A ground that pulls has no friction: only the brake's part is left.
@@ -174,17 +175,18 @@ Solution solve(const Instant& now, bool pulls) {
     if (now.scene.guided) guide(matrix, column);
     const Eigen::PartialPivLU<Matrix9> K(matrix);
     const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
-    const double tau = -omega_z_dot(s, free) / s.Q.row(2).dot(unit.segment<3>(3));
-    return {free + unit * tau, tau};
+    const double compliance = s.Q.row(2).dot(unit.segment<3>(3)), tau = -omega_z_dot(s, free) / compliance;
+    return {free + unit * tau, tau, now.slides ? K.determinant() * compliance : 0};
   }
   // tau = -(s N + brake) kappa
   const double kappa = wheel_kappa(&now.scene.friction, omega_z(s)), brake = now.scene.load.brake;
   column[about_axle] -= brake * kappa;
   Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, mu);
   if (now.scene.guided) guide(matrix, column);
-  const Vector9 unknowns = matrix.partialPivLu().solve(column);
-  if (kappa == 0) return {unknowns, 0};
-  return {unknowns, -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa};
+  const Eigen::PartialPivLU<Matrix9> K(matrix);
+  const Vector9 unknowns = K.solve(column);
+  const double tau = kappa == 0 ? 0 : -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa;
+  return {unknowns, tau, now.slides ? K.determinant() : 0};
 }
 
 // (24) under the scene's law of friction.
@@ -235,8 +237,10 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   const Vector2& d = now.d;
   y_dot[speed] = slip_dot.head<2>().dot(d);
   y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
+  // Without friction the determinant is -sin(theta) times positive terms.
+  const bool has_room = scene->guided || solution.determinant < 0;
   constexpr double usual = 100;  // weights
-  if (N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
+  if (has_room && N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
   return solve(now, true).unknowns[lambda_3] / N < WHEEL_LEAST_ROOM ? INFINITY : N;
 }
 
@@ -252,7 +256,7 @@ template <bool slides>
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   const Instant now = instant_of(*scene, y, slides);
   const Solution solution = solve(now);
-  const auto& [x, tau] = solution;
+  const auto& [x, tau, determinant] = solution;
   *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_rate(now, solution), {}, tau};
   std::copy_n(&x[lambda_1], 3, out->lambda);
 }

@@ -138,6 +138,19 @@ double stop_of(const Wheel& w, double t) {
   return std::fmin(t, inputs.corner(reached + solver::rounding_at(reached) + 1e-12 * ahead, reached + ahead));
 }
 
+// Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): of a small slip time has too few digits for the
+// rest.
+bool is_about_to_jam(const Wheel& w) {
+  constexpr double little_room = 1e-2;
+  if (!w.run.in_force.slides()) return false;
+  const double t = w.solver.known_until();
+  double y[WHEEL_MAX_STATES], reduced[WHEEL_MAX_STATES];
+  w.solver.read(t, y);
+  w.setup.sliding->reduce(y, reduced);
+  const WheelScene scene = w.run.in_force.scene_at(t);
+  return wheel_slip(&scene, reduced, y[w.setup.sliding->slip_index + 1]).room < little_room;
+}
+
 // Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
 Outcome step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solver;
@@ -151,7 +164,12 @@ Outcome step_to(Wheel& w, double t) {
     }
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
-    if (outcome == Outcome::failed) return outcome;
+    if (outcome == Outcome::failed) {
+      if (!is_about_to_jam(w)) return outcome;
+      w.run.ended_by = Event::jams;
+      move_to(w, solver.known_until());
+      return Outcome::event;
+    }
     look_at_grip(w, std::fmin(t, solver.known_until()));
     const long long steps = std::max((solver.counters().rhs - before) / evaluations_per_step, 1LL);
     work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
@@ -192,7 +210,8 @@ void arrive(Wheel& w, double t) {
 void end(Wheel& w) {
   const bool unfolded = w.run.phase == Phase::unfolded;
   if (unfolded) move_to(w, w.orbit.end_time());
-  end_run(w, static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event()));
+  const auto event = static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event());
+  end_run(w, w.run.ended_by == Event::none ? event : w.run.ended_by);
 }
 
 // The state is that before the step, and stays so.

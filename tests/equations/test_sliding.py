@@ -129,6 +129,22 @@ def test_the_velocity_of_O_is_that_of_rolling_and_the_slip_on_top(form, rows: Ro
     within(float((np.abs(off) / (1 + np.abs(fast).max(axis=1))).max()), 64 * EPSILON, "slip in the velocity, relative")
 
 
+@FORMS
+def test_a_wheel_jams_where_no_room_is_left_whatever_the_sign_of_N(form, rows: Rows) -> None:
+    """N = N_free / room: without room it is positive where the ground would pull without friction."""
+    scenes = rows.scenes.copy()
+    scenes["mu_slide"] *= 8
+    scenes["ground"] = 1  # presses
+    _, N = eq.derivative_each(form, scenes, eq.start_each(form, scenes, rows.motions))
+    reduced, hidden = eq.start_each(eq.REDUCED, scenes, rows.motions), 0
+    for scene, y, chi, jams in zip(scenes, reduced, rows.chi, np.isinf(N), strict=True):
+        record = eq.Scene.from_buffer_copy(scene.tobytes())
+        slip = eq.LIBRARY.wheel_slip(byref(record), y.ctypes.data_as(eq.DOUBLES), float(chi))
+        assert jams == (slip.room < 0) or abs(slip.room) < 1e-4, slip.room
+        hidden += slip.room < 0 < slip.N
+    assert hidden > 20 and np.isinf(N).sum() > 2 * hidden
+
+
 def slips(rows: Rows, directions: Table) -> Table:
     """wheel_slip in each direction: N, room, growth, turn, settling."""
     reduced = eq.start_each(eq.REDUCED, rows.scenes, rows.motions)

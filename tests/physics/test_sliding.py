@@ -413,6 +413,54 @@ def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float
     beyond(abs(other - ended.time), 1e-4, "instant with 1 % more friction, s")
 
 
+JAMMED = {"m": 36.2086, "r_0": 0.51346, "r": 0.06985, "J_x": 0.55723, "J_y": 0.1178, "J_z": 0.5408, "s": 0.02171}
+JAMMED |= {"mu_max": 0.65776, "mu_slide": 0.60235, "psi_start": 1.18405, "theta_start": 1.36486, "phi_start": -1.24074}
+JAMMED |= {"psi_dot_start": 1.6849, "theta_dot_start": 0.78322, "phi_dot_start": -63.15283}
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_slide_that_cannot_but_begin_in_a_jam_ends_there(
+    library: Library, tolerance: float, formulation: int
+) -> None:
+    """Without friction the ground would pull: N > 0 alone does not show the jam."""
+    scene = Scene(JAMMED, 0.05, Schedule(((0.0, {"M_1": 10.2}),)))
+    run = simulate(library, scene, [0.0, 0.05], tolerance, formulation=formulation)
+    assert run.end is not None and "jams" in str(run.ended)
+    within(abs(run.end - 0.0212237586), 1e-3 * tolerance + 1e-10, "instant of the jam, s")
+
+
+def jamming(random: np.random.Generator) -> Scene:
+    """0.6 s of a light or heavy wheel on a road of much grip."""
+    (a, b, c), mu = random.uniform(0.05, 0.9, 3), random.uniform(0.5, 4)
+    m, r_0, r = 10 ** random.uniform(0, 2), random.uniform(0.2, 0.6), random.choice([0, random.uniform(0, 0.15)])
+    I = m * (r_0 + r) ** 2 * random.choice([0.1, 0.3, 1])  # noqa: E741
+    start = {"m": m, "r_0": r_0, "r": r, "J_x": I * (b + c), "J_y": I * (a + c), "J_z": I * (a + b)}
+    start |= {"s": random.uniform(0, 0.05), "mu_max": mu, "mu_slide": mu * random.uniform(0.6, 1)}
+    start |= dict(zip(("psi_start", "phi_start"), random.uniform(-pi, pi, 2), strict=True))
+    start |= {"theta_start": random.uniform(0.4, pi - 0.4), "phi_dot_start": random.normal(0, 20)}
+    start |= dict(zip(("psi_dot_start", "theta_dot_start"), random.normal(0, 2, 2), strict=True))
+    if random.random() < 0.5:
+        start |= dict(zip(("slip_x_start", "slip_y_start"), random.normal(0, 2, 2), strict=True))
+    loads = {"M_1": random.normal(0, 5), "F_X": random.normal(0, 10)}
+    return Scene({name: float(value) for name, value in start.items()}, 0.6, Schedule(((0.0, loads),)))
+
+
+def test_jams_of_random_wheels_end_the_run_at_the_same_instant_in_both_formulations(library: Library) -> None:
+    """Also where the slip is about to end: there N grows within the last digits of time."""
+    random, jams = np.random.default_rng(7), 0
+    for _ in range(200):
+        scene, tolerance = jamming(random), float(10 ** -random.uniform(4, 11))
+        runs = [attempt(library, {**scene.start, "formulation": f}, [0, 0.6], tolerance, scene.inputs) for f in (2, 3)]
+        endings = ["jams" in run.messages[-1] if run.messages else False for run in runs]
+        assert all(run.status <= OK + 1 or run.end is not None for run in runs if run.columns), scene.start
+        assert endings[0] == endings[1], scene.start
+        if endings[0] and runs[0].end is not None and runs[1].end is not None:
+            within(abs(runs[0].end - runs[1].end), 1e-5, "instants of the jam apart, s")
+            jams += 1
+    beyond(jams, 10, "jams")
+
+
 @pytest.mark.parametrize(("start", "brake"), [
     ({"mu_max": 0.1, "mu_slide": 0.1, "s": 0.3, "omega_s": 1e-6}, 0.0),
     ({"mu_max": 0.4, "mu_slide": 0.3, "omega_s": 1e-4}, 1e3),
