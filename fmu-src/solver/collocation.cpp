@@ -73,40 +73,44 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// Newton's matrices for the rates of the settling states at the points, and what follows a steep turning.
+// Newton's matrices for the rates at the points of the state that settles and of the steep one, and what follows that.
 struct Collocation::Newton {
-  Eigen::PartialPivLU<Square> matrix[2];
+  Eigen::PartialPivLU<Square> settling, steep;
   Row others = Row::Zero();
 };
 
+// (rates at the points) => Newton's matrices.
 Collocation::Newton Collocation::prepare(const Problem& problem, const Step& step) const {
   const Eigen::Map<const Square> integral(&radau.integral[0][0]);
   const Eigen::Map<const Rates> f(&f_[0][0]);
   const auto along = [&](int i) -> Column { return (size_ * integral * f.col(i)).array() + step.y_start[i]; };
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
   Newton newton;
-  for (int i = 0; i < problem.settling_count; ++i) {
-    const auto& [state, speed, slopes_of] = problem.settling[i];
-    const Column values = along(state);
-    Column slopes;
-    slopes_of(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
-              newton.others.data());
+  Column slopes;
+  if (const auto& steep = problem.steep) {
+    const Column values = along(steep->state);
+    steep->slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
+                  newton.others.data());
+    newton.steep.compute(size_ * slopes.asDiagonal() * integral - Square::Identity());
+  }
+  if (const auto& settling = problem.settling) {
+    const Column values = along(settling->state);
+    settling->slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data());
     Square matrix = size_ * slopes.asDiagonal() * integral;
-    if (speed < 0)
-      matrix.diagonal().array() -= 1;
-    else
-      matrix.diagonal() -= along(speed);
-    newton.matrix[i].compute(matrix);
+    matrix.diagonal() -= along(settling->speed);
+    newton.settling.compute(matrix);
   }
   return newton;
 }
 
-// The change of the states by one sweep, in units of the weights; infinite where rates are not finite.
+// (rates at the points) => better rates; returns the change of the states in units of the weights, infinite where rates
+// are not finite. f(y), fixed-point iteration, is corrected by Newton's method: of the steep state, and with it all
+// that follows its rate, and of the state that settles.
 double Collocation::sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters,
                           Step* step) {
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
-  Column speeds[2];
+  Column speeds;
   for (int j = 0; j < radau_points; ++j) {
     const Row y = state_at(j, *step, size_, f_);
     const double t = step->start + (1 + places[j]) * size_;
@@ -114,18 +118,18 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
     step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
-    for (int i = 0; i < problem.settling_count; ++i) {
-      const int speed = problem.settling[i].speed;
-      speeds[i][j] = speed < 0 ? 1 : y[speed];
-    }
+    if (problem.settling) speeds[j] = y[problem.settling->speed];
   }
-  for (int i = 0; i < problem.settling_count; ++i) {
-    const int state = problem.settling[i].state;
-    const Column turning = speeds[i].cwiseProduct(f.col(state) - before.col(state));
-    const Column settled = before.col(state) - newton.matrix[i].solve(turning);
-    // Newton's method has moved the state, and with a steep turning all that follows it.
-    if (problem.settling[i].speed < 0) f += (settled - f.col(state)) * newton.others;
+  if (problem.steep) {
+    const int state = problem.steep->state;
+    const Column settled = before.col(state) - newton.steep.solve(f.col(state) - before.col(state));
+    f += (settled - f.col(state)) * newton.others;
     f.col(state) = settled;
+  }
+  if (problem.settling) {
+    const int state = problem.settling->state;
+    const Column turning = speeds.cwiseProduct(f.col(state) - before.col(state));
+    f.col(state) = before.col(state) - newton.settling.solve(turning);
   }
   const Rates change = size_ * (f - before);
   double largest = 0;
@@ -141,10 +145,8 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
   if (last.degree != radau_points) {
     ++counters->rhs;
     if (std::isnan(problem.derivative(problem.owner, step->start, step->y_start, f_[0]))) return false;
-    for (int i = 0; i < problem.settling_count; ++i) {
-      const auto& [state, speed, slopes_of] = problem.settling[i];
-      if (speed >= 0 && !(std::fabs(size_ * f_[0][speed]) < step->y_start[speed])) f_[0][state] = 0;
-    }
+    if (const auto& s = problem.settling)
+      if (!(std::fabs(size_ * f_[0][s->speed]) < step->y_start[s->speed])) f_[0][s->state] = 0;
     for (int j = 1; j < radau_points; ++j) std::copy_n(f_[0], max_states, f_[j]);
     return true;
   }
@@ -158,8 +160,12 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
   return true;
 }
 
-// The error of the step over size_ in units of the weights; infinite where the sweeps do not converge. One that is not
-// predicted may have begun so far off that the first fall of the changes is not that of the next.
+// The error of the step over size_ in units of the weights; infinite where the sweeps do not converge. They end where
+//   the change is below `distance`;
+//   the changes that would follow, change^2 / (before - change), are: from the second sweep on, and where the step is
+//     not predicted, from a small change on, as the first fall need not be that of the next;
+//   the change is below one and does not fall, or most_sweeps are made: what is left is rounding;
+//   the change is not below one and does not fall, or is not finite: they do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters,
                              Step* step) {
   Newton newton = prepare(problem, *step);
@@ -170,20 +176,43 @@ double Collocation::try_size(const Problem& problem, const double* weights, bool
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
     // A steep turning bends between two sweeps.
-    if (sweeps > 0 && problem.is_steep()) newton = prepare(problem, *step);
+    if (sweeps > 0 && problem.steep) newton = prepare(problem, *step);
     change = sweep(problem, weights, newton, counters, step);
     const bool falls = sweeps < most_sweeps && change < before;
     if (!falls && !(change < 1)) return INFINITY;
-    // The changes that would follow sum to change^2 / (before - change). Small ones that do not fall are rounding.
     converged = !falls || change < distance ||
                 (sweeps > 0 && change < largest_last && change * change < distance * (before - change));
   }
   const Row last =
-      (problem.is_steep() ? error_of_steep : error_of_last) * size_ *
+      (problem.steep ? error_of_steep : error_of_last) * size_ *
       (Eigen::Map<const Eigen::Matrix<double, 1, radau_points>>(radau.last) * Eigen::Map<Rates>(&f_[0][0]));
   return weighted_norm<max_states>(last.data(), weights);
 }
 
+// The step gets its size, and its end, `stop` where that is near: true.
+bool Collocation::size_up(const Problem& problem, double stop, double shortest, Step* step) {
+  size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
+  const bool stops = step->start + longer * size_ >= stop;
+  if (stops) size_ = stop - step->start;
+  step->end = stops ? stop : step->start + size_;
+  return stops;
+}
+
+// The size of the next step, from the error of this one. Where the direction starts off its limit, errors hardly depend
+// on the size of long steps; a state that settles at a speed changes as 1 / speed.
+void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
+  const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
+  const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
+  if (!known_ || !stops || next < liked_) liked_ = next;
+  if (!known_ || !problem.settling) return;
+  const int speed = problem.settling->speed;
+  liked_ *= std::clamp(step.y_end[speed] / step.y_start[speed], 0.4, 1.0);
+}
+
+// Tries sizes until
+//   the error is at most one: the step is accepted;
+//   it is not, at the shortest size, or after most_tries;
+//   the rates at the start are not finite.
 bool Collocation::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
   double weights[max_states] = {};
   problem.weights(problem.owner, part_of_tolerance * problem.share, step->y_start, weights);
@@ -194,33 +223,20 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
   const double shortest = roundings * rounding_at(step->start);
   failure_ = step_too_small;
   for (int attempts = 0; attempts < most_tries; ++attempts) {
-    size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
-    const bool stops = step->start + longer * size_ >= stop;
-    if (stops) size_ = stop - step->start;
-    step->end = stops ? stop : step->start + size_;
+    const bool stops = size_up(problem, stop, shortest, step);
     if (!predict(problem, last, counters, step)) {
       failure_ = "the rates of the states are not finite";
-      break;
+      return false;
     }
     const bool is_shortest = size_ <= shortest;
-    if (is_shortest)
-      for (int i = 0; i < problem.settling_count; ++i) weights[problem.settling[i].state] = 0;
+    if (is_shortest && problem.steep) weights[problem.steep->state] = 0;
+    if (is_shortest && problem.settling) weights[problem.settling->state] = 0;
     const double error = try_size(problem, weights, last.degree == radau_points, counters, step);
-    const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
     known_ = error <= 1;
-    // Where the direction starts off its limit, errors hardly depend on the size of long steps.
-    const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
-    if (!known_ || !stops || next < liked_) liked_ = next;
-    if (!known_ && is_shortest) break;
-    if (!known_) continue;
-    const Row y_end = state_at(radau_points - 1, *step, size_, f_);
-    std::copy_n(y_end.data(), max_states, step->y_end);
-    // A state that settles at a speed changes as 1 / speed.
-    for (int i = 0; i < problem.settling_count; ++i)
-      if (const int speed = problem.settling[i].speed; speed >= 0)
-        liked_ *= std::clamp(y_end[speed] / step->y_start[speed], 0.4, 1.0);
-    failure_ = nullptr;
-    return true;
+    if (known_) Eigen::Map<Row>(step->y_end) = state_at(radau_points - 1, *step, size_, f_);
+    like(problem, error, attempts, stops, *step);
+    if (known_) failure_ = nullptr;
+    if (known_ || is_shortest) return known_;
   }
   return false;
 }

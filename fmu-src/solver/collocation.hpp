@@ -1,6 +1,6 @@
-// Collocation at the six points of Radau IIA, order 11: for a problem in which one state or two settle,
-// however fast, where their turning vanishes (Problem::settling). The error of the polynomial is kept below the
-// tolerance; that at the end of the step, of order 11, is far smaller.
+// Collocation at the six points of Radau IIA, order 11: for a problem in which one state or two settle, however fast
+// (Problem::settling and steep). The error of the polynomial is kept below the tolerance; that at the end of the step,
+// of order 11, is far smaller.
 //
 // From step to step it keeps the wanted size of the next step, and the rates of the last one, which predict the next.
 #pragma once
@@ -26,6 +26,8 @@ class Collocation final : public Engine {
  private:
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters, Step* step);
+  bool size_up(const Problem& problem, double stop, double shortest, Step* step);
+  void like(const Problem& problem, double error, int attempts, bool stops, const Step& step);
   struct Newton;
   Newton prepare(const Problem& problem, const Step& step) const;
   double sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters, Step* step);

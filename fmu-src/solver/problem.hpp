@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace solver {
@@ -25,12 +26,18 @@ struct Watched {
   int state = -1;  // the only one that `value` reads; below zero: it reads all
 };
 
-// A state whose rate is turning / y[speed] + ..., or the turning alone where `speed` is below zero: where the speed is
-// small, or the turning steep, it settles at once where the turning vanishes.
+// A state whose rate is turning / y[speed] + ...: where the speed is small, it settles at once where the turning
+// vanishes. (t, y, values of the state) => slopes of the turning by the state.
 struct Settling {
   int state, speed;
-  // Slopes of the turning by the state, where y has these values of it. Of a steep turning also `others`: by how much
-  // the rate of each state changes with the turning.
+  void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes);
+};
+
+// A state whose rate falls steeply with it: it settles at once where that vanishes.
+// (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state changes with
+// its rate.
+struct Steep {
+  int state;
   void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes,
                  double* others);
 };
@@ -53,18 +60,15 @@ struct Problem {
   // the watched functions have a simple shape. Returns their number, at most max_extremes; null where inputs are
   // constant.
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
-  double near;           // margins below this are near zero
-  double longest_step;   // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
-  Settling settling[2];  // for collocation alone
-  int settling_count;
-  double first_step = INFINITY;  // s, > 0: limit of collocation's, whose points leave out the start
-  double share = 1;              // of the error that a step may otherwise make
+  double near;          // margins below this are near zero
+  double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
+  std::optional<Settling> settling;  // for collocation alone
+  std::optional<Steep> steep;        // the same
+  double first_step = INFINITY;      // s, > 0: limit of collocation's, whose points leave out the start
+  double share = 1;                  // of the error that a step may otherwise make
 
   // At most max_watched of them.
   void watch(const Watched& function) { watched[watched_count++] = function; }
-  // At most two, one of them steep and the first.
-  void settle(const Settling& state) { settling[settling_count++] = state; }
-  bool is_steep() const { return settling_count > 0 && settling[0].speed < 0; }
 };
 
 // Of all steps since the first start. `rhs` counts the evaluations of f, those for difference quotients included but

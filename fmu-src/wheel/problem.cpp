@@ -64,7 +64,7 @@ double margin(void* owner, int event, double t, const double* y) {
 }
 
 // Of |u| chi_dot by the direction chi of the slip.
-void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
+void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   double reduced[WHEEL_MAX_STATES];
@@ -112,12 +112,12 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   const int spin = setup.formulation->spin_index;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.settle({spin, -1, slopes_of_spin});
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
   if (now.in_layer()) {  // an eighth of it
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.settle({setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning});
+  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;

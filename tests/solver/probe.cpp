@@ -1,7 +1,6 @@
 // One solver and its problem behind a C interface, for ctypes: problems with closed forms, no wheel, no frame. What is
 // watched are functions of Python.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <new>
 #include <span>
@@ -59,12 +58,15 @@ void rates(const Setting& s, double t, const double* y, double* d) {
 
 int states_of(const Setting& s) { return s.kind >= settling ? 4 : s.kind == harmonic ? 2 : 1; }
 
-void slopes_of_turning(void* owner, double, const double*, std::span<const double> values, double* slopes,
-                       double* others) {
+void slopes_of_turning(void*, double, const double*, std::span<const double> values, double* slopes) {
+  std::fill_n(slopes, values.size(), -stiffness);
+}
+
+void slopes_of_steep(void*, double, const double*, std::span<const double> values, double* slopes, double* others) {
   others[1] = 1;
   for (const double chi : values) {
     const double part = 1 / std::cosh(chi / width);
-    *slopes++ = -stiffness * (of(owner).kind == steep ? part * part / width : 1);
+    *slopes++ = -stiffness * part * part / width;
   }
 }
 
@@ -93,18 +95,11 @@ solver::Problem problem_of(Probe* probe) {
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.watched) p.watch({1, watched, false});
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
-  // Of the other problems the last state, which rests, at a speed of one.
-  const bool settles = s.kind >= settling;
-  p.settle({settles ? 1 : 7, s.kind == steep ? -1 : settles ? 0 : 6, slopes_of_turning});
+  if (s.kind == steep)
+    p.steep = {1, slopes_of_steep};
+  else if (s.kind >= settling)
+    p.settling = {1, 0, slopes_of_turning};
   return p;
-}
-
-// The state with all that rests.
-std::array<double, states> whole(const Setting& s, const double* y) {
-  std::array<double, states> all;
-  std::copy_n(y, states, all.begin());
-  if (s.method == solver::Method::collocation && s.kind < settling) all[6] = 1;
-  return all;
 }
 
 }  // namespace
@@ -112,7 +107,7 @@ std::array<double, states> whole(const Setting& s, const double* y) {
 // At t = 0.
 PUBLIC Probe* probe_new(const Setting* setting) {
   Probe* probe = new (std::nothrow) Probe{*setting, {}};
-  (void)probe->solver.start(problem_of(probe), setting->method, 0, whole(*setting, setting->y).data());
+  (void)probe->solver.start(problem_of(probe), setting->method, 0, setting->y);
   return probe;
 }
 
@@ -132,7 +127,7 @@ PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limi
 
 PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   const Setting& s = probe->setting;
-  (void)probe->solver.restart(problem_of(probe), s.method, t, whole(s, y).data());
+  (void)probe->solver.restart(problem_of(probe), s.method, t, y);
 }
 
 // Begin of the last step, time known; steps, evaluations, roots.
