@@ -46,16 +46,16 @@ def window_of(browser: Browser, **look: object) -> BrowserContext:
 
 
 @contextmanager
-def opened(window: BrowserContext, path: Path, address: str = "") -> Iterator[Page]:
-    """A page that stands still at its start; afterwards its console must hold no error and no warning."""
+def opened(window: BrowserContext, path: Path, address: str = "", faults: tuple[str, ...] = ()) -> Iterator[Page]:
+    """A page that stands still at its start; afterwards its console must hold no error and no warning but these."""
     page = window.new_page()
-    faults: list[str] = []
-    page.on("console", lambda message: faults.append(message.text) if message.type in ("error", "warning") else None)
-    page.on("pageerror", lambda fault: faults.append(str(fault)))
+    found: list[str] = []
+    page.on("console", lambda message: found.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("pageerror", lambda fault: found.append(str(fault)))
     yield show(page, path, address)
     page.close()
-    faults = [line for line in faults if not any(noise in line for noise in NOISE)]
-    assert not faults, faults
+    found = [line for line in found if not any(noise in line for noise in (*NOISE, *faults))]
+    assert not found, found
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """A link is a state: what was chosen on the live page is in its address, and opened elsewhere it is the same."""
 
+import numpy as np
 import pytest
 from page.pages import column, do, opened, start
 
@@ -51,7 +52,7 @@ def test_the_page_writes_what_the_reader_does_into_its_address(live):
 def test_steps_of_the_story_and_scenes_are_places_to_which_the_browser_goes_back(live):
     follow(live, "step=1")
     for _ in range(2):
-        live.locator("#story [name=next]").click()
+        live.locator("#live [name=next]").click()
     live.locator("#live [name=scenes]").click()
     live.locator("#presets button").first.click()
     live.evaluate("page.player.pause()")
@@ -103,6 +104,13 @@ def test_a_wrong_address_gives_the_first_scene_and_says_why(live, text, sentence
     message = live.locator("#refusal").inner_text()
     assert sentence in message and message.startswith("This address cannot be shown: ")
     assert live.evaluate("[page.live.step, page.live.trouble]") == [0, None]
-    assert column(live, "phi_dot")[0] == -5
-    live.locator("#story [name=next]").click()
+    assert column(live, "phi_dot")[0] == pytest.approx(-2.368)
+    live.locator("#live [name=next]").click()
     live.wait_for_function("document.querySelector('#refusal').hidden")
+
+
+@pytest.mark.parametrize("word", ["true", "1"])
+def test_a_wheel_carrier_is_written_true_and_read_either_way(live, word):
+    follow(live, f"guided={word}&theta=90deg")
+    assert np.ptp(column(live, "theta")) == 0 and live.evaluate("page.live.value('guided')") == 1
+    assert "guided=true" in live.evaluate(LINK)

@@ -142,11 +142,11 @@ def test_the_friction_that_rolling_needs_is_shown_beside_the_grip_and_else_the_s
     start(live, at=0.5, mu_max=0.45, mu_slide=0.4)
     force = [column(live, f"lambda_{k}")[50] for k in (1, 2, 3)]
     said = live.locator("#grip-now")
-    assert f"μ = {np.hypot(*force[:2]) / force[2]:.3f} now, of 0.45" in said.inner_text()
+    assert f"μ = {np.hypot(*force[:2]) / force[2]:.3f} now, of μmax = 0.45" in said.inner_text()
     live.evaluate("page.player.seek(0.75); page.live.frame(); page.draw()")
     slip = [column(live, name)[75] for name in ("slip_x", "slip_y")]
     words = f"at {np.hypot(*slip):.2f} m/s ({slip[0]:.2f} along, {slip[1]:.2f} across)".replace("-", "−")
-    assert words in said.inner_text() and "μs = 0.4" in said.inner_text()
+    assert words in said.inner_text() and "μslide = 0.4" in said.inner_text()
     assert live.locator(".label span").inner_text() == f"slides at {np.hypot(*slip):.2f} m/s"
     assert "slides" in live.locator("#legend").inner_text() and "held" not in live.locator("#legend").inner_text()
 
@@ -155,12 +155,12 @@ def test_the_force_of_a_jam_which_grows_without_bound_is_no_number(live):
     """Painlevé's paradox; the same wheel beyond the jam lies flat, with its last normal force."""
     start(live, theta_start=1.2, phi_dot_start=0.0, mu_max=2.0, mu_slide=1.6, slip_y_start=3.0)
     live.evaluate("page.player.seek(10); page.draw()")
-    force = live.locator(".plot output").nth(2)
+    force = live.locator(".plot output").nth(3)
     assert "lies flat" in live.evaluate("page.wheels[0].ended") and float(force.inner_text()) > 0
     start(live, **SLIDES["jams"].start)
     assert "jams" in live.evaluate("page.wheels[0].ended") and column(live, "lambda_3")[-1] > 1e5
     live.evaluate("page.player.seek(10); page.draw()")
-    assert force.inner_text() == "–" and live.evaluate("page.plots.curves[2].ranges[1][1]") < 1e3
+    assert force.inner_text() == "–" and live.evaluate("page.plots.curves[3].ranges[1][1]") < 1e3
     live.evaluate("page.player.seek(0)")
 
 
@@ -283,3 +283,27 @@ def test_a_wheel_that_cannot_exist_is_remarked(live, plan, words):
     assert remark.is_visible() is (words is not None) and (not words or words in remark.inner_text())
     choose(live, "body:torus")
     assert not remark.is_visible()
+
+
+LOOK = "page.stage.models[0].look.kind"
+
+
+@pytest.mark.parametrize(
+    ("preset", "kind"),
+    [("wheel:coin", "coin"), ("wheel:backspin", "hoop"), ("body:disc", "disc"), ("wheel:bicycle_wheel", "wheel")],
+)
+def test_a_body_is_drawn_as_it_is(live, preset, kind):
+    start(live)
+    assert live.evaluate(LOOK) == "wheel"
+    choose(live, preset)
+    assert live.evaluate(LOOK) == kind
+
+
+def test_small_energies_and_forces_are_in_thousandths(live):
+    start(live)
+    units = "page.plots.all.map(({unit: {textContent}}) => textContent)"
+    assert {"N", "J"} <= set(live.evaluate(units))
+    choose(live, "wheel:coin")
+    assert {"mN", "mJ"} <= set(live.evaluate(units))
+    shown = float(live.locator(".plot:not([hidden]) output").nth(3).inner_text())
+    assert shown == pytest.approx(1000 * column(live, "E")[0], abs=0.051)

@@ -4,20 +4,25 @@ import re
 
 import numpy as np
 import pytest
-from page.pages import SIZE, column
+from page.pages import SIZE, column, do, opened
 
-STEPS = 10
+STEPS = 11
 UPRIGHT = np.pi / 2
-OPEN = "(k) => { Object.assign(page.live, {step: k - 1, open: true}).turn(0); page.player.pause(); }"
+OPEN = """(k) => {
+  Object.assign(page.live, {step: k - 1, open: true}).turn(0);
+  page.live.tell();
+  page.player.pause();
+  page.live.frame();
+}"""
 
 
 @pytest.fixture
 def story(live):
-    """story(k): the page at step k; returns what its card says."""
+    """story(k): the page at step k, with what it asks answered; returns what its card says."""
 
     def at(k: int) -> str:
         live.evaluate(OPEN, k)
-        assert live.locator("#story .count").inner_text() == f"{k} of {STEPS}"
+        assert live.locator("#live .count").inner_text() == f"{k} of {STEPS}"
         return live.locator("#story .text").inner_text()
 
     return at
@@ -32,10 +37,18 @@ def lean(page, wheel: int = 0) -> np.ndarray:
     return np.degrees(abs(column(page, "theta", wheel) - UPRIGHT))
 
 
-def test_the_wheel_rolls_straight_on_and_keeps_its_speed(live, story):
-    spin, radius, speed = numbers(story(1).split("straight on")[1])
-    path = np.hypot(*(column(live, name)[-1] - column(live, name)[0] for name in ("X_O", "Y_O")))
-    assert path == pytest.approx(10 * speed) == pytest.approx(10 * spin * radius)
+def test_the_wheel_rolls_with_its_spin_times_its_radius_and_tips(live, story):
+    spin, radius, speed, t, tipped = numbers(story(1).split("does not slide")[1])
+    assert np.hypot(*(column(live, f"{name}_dot")[0] for name in ("X_O", "Y_O"))) == pytest.approx(speed, abs=5e-3)
+    assert spin * radius == pytest.approx(speed, abs=0.02)
+    assert np.interp(t, column(live, "time"), lean(live)) == pytest.approx(tipped, abs=0.5) and lean(live).max() > 20
+
+
+def test_pushed_forward_from_the_start_the_first_wheel_stays_up(live, story):
+    story(1)
+    do(live, 0, M_3=-6)
+    do(live, 1, M_3=0)
+    assert lean(live).max() < 5
 
 
 def test_a_leaning_wheel_turns_and_does_not_fall(live, story):
@@ -44,26 +57,59 @@ def test_a_leaning_wheel_turns_and_does_not_fall(live, story):
     assert np.ptp(column(live, "psi")) > np.pi  # it runs in a circle
 
 
-def test_what_rights_it_is_drawn_with_the_terms_of_the_equation(live, story):
-    """The terms add up to J_x times the rate of omega_2, a difference quotient; the arrow lies along their moment."""
-    assert numbers(story(3))[2] == pytest.approx(max(column(live, "psi_dot") * np.sin(column(live, "theta"))), abs=5e-3)
-    turning = column(live, "psi_dot") * np.sin(column(live, "theta"))
-    for row in (5, 20, 60):
-        live.evaluate("(t) => { page.player.seek(t); page.live.frame(); page.pose(); }", row * 0.01)
-        text = live.locator("#terms p").last.inner_text().replace("−", "-").replace(" - ", " + -")
-        total, gyro, ground = (float(part.split()[0]) for part in re.split(r" = | \+ ", text))
-        assert total == pytest.approx(0.9 * (turning[row + 1] - turning[row - 1]) / 0.02, abs=0.03)
-        assert total == pytest.approx(gyro + ground, abs=0.011) and abs(gyro) > 0.5 > abs(ground)
-        e_1, e_2 = live.evaluate(ARROW)
-        assert e_2 * gyro > 0 and e_1 > 0
+TERMS = ("weight", "side", "gyro", "sum")
+AT = "(t) => { page.player.seek(t); page.live.frame(); page.pose(); }"
+TURNS = """() => page.stage.models[0].turns.map(([name, {visible, userData: {head}}]) =>
+  [name, visible ? Math.atan2(head.position.y, head.position.x) : 0])"""
+BARS = """() => [...document.querySelectorAll('#balance .bar i')].map(({style}) =>
+  (style.left === '50%' ? 1 : -1) * parseFloat(style.width))"""
+
+
+def balance(page) -> dict[str, float]:
+    """The moments about e1 as the card shows them, N m."""
+    return {name: float(page.locator(f"#balance .{name} output").inner_text().replace("−", "-")) for name in TERMS}
+
+
+def test_what_rights_it_is_shown_by_moments_about_e1_that_add_up_to_the_tilts_acceleration(live, story):
+    """The acceleration is a difference quotient; a bar to the right and a turn from e2 to e3 right the wheel."""
+    story(3)
+    for row in (5, 20, 35, 60):
+        live.evaluate(AT, row * 0.01)
+        shown = balance(live)
+        rates = column(live, "theta_dot")
+        assert shown["sum"] == pytest.approx(0.9 * (rates[row + 1] - rates[row - 1]) / 0.02, abs=0.12)
+        assert shown["weight"] + shown["side"] + shown["gyro"] == pytest.approx(shown["sum"], abs=1e-9)
+        assert shown["weight"] == pytest.approx(
+            -column(live, "lambda_3")[row] * 0.3 * np.cos(column(live, "theta")[row]), abs=0.16
+        )
+        assert shown["side"] > 0 and shown["gyro"] > 0
+        bars, turns = (live.evaluate(what) for what in (BARS, TURNS))
+        for bar, (name, angle) in zip(bars, turns, strict=True):
+            assert bar == pytest.approx(100 * shown[name] / (20 * 9.81 * 0.3), abs=0.2)
+            assert angle * shown[name] > 0 or abs(shown[name]) < 4
     story(4)
-    assert not live.locator("#terms").is_visible()
+    assert not live.locator("#balance").is_visible()
 
 
-ARROW = """() => {
-  const {moment} = page.stage.models[0];
-  return moment.up.clone().set(0, 0, 1).applyQuaternion(moment.quaternion).toArray().slice(0, 2);
-}"""
+def test_where_it_leans_most_the_text_has_the_moments_of_that_instant(live, story):
+    t, gyro, side, weight = numbers(story(3).split("leans most")[1])
+    live.evaluate(AT, t)
+    assert balance(live) == pytest.approx(
+        {"weight": -weight, "side": side, "gyro": gyro, "sum": gyro + side - weight}, abs=0.11
+    )
+    assert lean(live)[round(t / 0.01)] == lean(live)[:100].max()
+
+
+def test_what_rights_it_is_seen_from_behind_whichever_way_the_wheel_heads(live, story):
+    story(3)
+    for t in (0.0, 2.0):
+        live.evaluate("(t) => { page.player.seek(t); page.draw(); }", t)
+        psi, *centre = (column(live, name)[round(t / 0.01)] for name in ("psi", "X_O", "Y_O"))
+        towards = centre - np.array(live.evaluate("[...page.stage.eye.position]")[:2])
+        towards /= np.linalg.norm(towards)
+        assert towards @ [np.cos(psi), np.sin(psi)] > 0.9
+    story(2)
+    assert live.evaluate("page.stage.place") == "beside"
 
 
 def test_the_critical_spin_parts_two_wheels(live, story):
@@ -106,10 +152,20 @@ def test_a_motor_adds_energy_and_the_brake_takes_it(live, story):
     assert before < after > last
 
 
+def test_a_locked_wheel_slides_as_far_as_its_speed_squared_over_the_friction(live, story):
+    lock, _, _, slid = numbers(story(9).replace("ωz", "").split("/(2")[0].removesuffix("v²"))
+    v, X = (np.hypot(*(column(live, f"{name}{rate}") for name in ("X_O", "Y_O"))) for rate in ("_dot", ""))
+    assert v[0] == pytest.approx(7) and slid == pytest.approx(7**2 / (2 * 0.4 * 9.81), abs=0.05)
+    assert lock == 0.5 and X[-1] - X[50] == pytest.approx(slid, abs=0.05)
+    live.evaluate("page.player.seek(0.5); page.live.setNow('M_brake', 50); page.live.frame()")
+    stops = np.hypot(*(column(live, name) for name in ("X_O", "Y_O")))[-1] - X[50]
+    assert stops < slid - 0.2 and live.evaluate("page.wheels[0].phases.slides.length") == 0
+
+
 def test_thrown_with_backspin_it_slides_grips_and_comes_back(live, story):
     """The closed form of docs/physics.md; the slip is drawn as long as it slides."""
     story(5)
-    forward, spin, grips, back = numbers(story(9))[:4]
+    forward, spin, grips, back = numbers(story(10).split("At ")[0])[:2] + numbers(story(10).split("At ")[1])
     growth = 0.3 * 9.81 * (1 + 20 * 0.35**2 / 1.8)
     t = (forward + 0.35 * spin) / growth
     assert (grips, back) == (pytest.approx(t, abs=0.05), pytest.approx(0.3 * 9.81 * t - forward, abs=0.005))
@@ -121,20 +177,23 @@ def test_thrown_with_backspin_it_slides_grips_and_comes_back(live, story):
         assert live.locator("#grip-now").get_attribute("data-state") == ("slides" if length else "rolls")
 
 
-def test_what_it_does_now_can_be_read_beside_every_step_on_a_small_screen(live, story):
+BELOW = """() => {
+  document.querySelector('#live').scrollTop = 0;
+  const bottoms = [...document.querySelectorAll('#critical, #grip-now, #start .knob')]
+      .map((part) => part.getBoundingClientRect().bottom);
+  return Math.max(...bottoms) - document.querySelector('#live').getBoundingClientRect().bottom;
+}"""
+
+
+def test_what_it_does_now_and_the_sliders_of_its_start_are_in_sight_beside_every_step_on_a_small_screen(live, story):
     """Also while it slides; partner: a lower window."""
-    shown = "() => [...document.querySelectorAll('#critical, #grip-now')].map((p) => p.getBoundingClientRect().bottom)"
-    for height in (800, 560):
-        live.set_viewport_size({"width": 1280, "height": height})
+    for height in (768, 560):
+        live.set_viewport_size({"width": 1366, "height": height})
         below = []
         for k in range(1, STEPS + 1):
             story(k)
-            live.evaluate("() => { page.live.frame(); document.querySelector('#live').scrollTop = 0; }")
-            below.append(
-                max(live.evaluate(shown))
-                - live.evaluate("document.querySelector('#live').getBoundingClientRect().bottom")
-            )
-        assert (max(below) < 0) is (height == 800), below
+            below.append(live.evaluate(BELOW))
+        assert (max(below) < 0) is (height == 768), below
     live.set_viewport_size(SIZE)
 
 
@@ -148,7 +207,7 @@ SLIP = """() => {
 
 
 def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
-    assert numbers(story(10))[0] == pytest.approx(column(live, "time")[-1], abs=5e-3)
+    assert numbers(story(11))[0] == pytest.approx(column(live, "time")[-1], abs=5e-3)
     assert column(live, "theta")[-1] < 1e-6
     live.evaluate("page.player.seek(10); page.draw()")
     assert live.locator(".label").get_attribute("data-state") == "ended"
@@ -157,7 +216,7 @@ def test_without_spin_it_lies_flat_and_the_run_ends(live, story):
 
 
 def test_keys_and_buttons_lead_on_and_back(live, story):
-    count, back, on = (live.locator(f"#story {place}") for place in (".count", "[name=back]", "[name=next]"))
+    count, back, on = (live.locator(f"#live {place}") for place in (".count", "[name=back]", "[name=next]"))
     story(1)
     live.evaluate("document.activeElement.blur()")
     for key, step in (("n", 2), ("b", 1), ("b", 1)):
@@ -179,3 +238,70 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
     live.get_by_role("button", name="Back to the story's wheel").click()
     assert live.evaluate(faint)[0] is False and live.evaluate("page.live.value('slope')") == 0
+
+
+ASK = """(k) => {
+  Object.assign(page.live, {step: k - 1, open: true}).turn(0);
+  page.live.frame();
+}"""
+PLAY = "(t) => { page.player.play(); page.live.frame(); page.player.pause(); page.player.seek(t); page.live.frame(); }"
+ASKS = (2, 4, 5, 10)
+
+
+@pytest.mark.parametrize("step", ASKS)
+def test_a_step_that_asks_hides_the_future_until_it_plays(live, story, step):
+    said = story(step)
+    live.evaluate(ASK, step)
+    hidden = "[page.plots.all.every(({secret}) => secret), page.pose() ?? page.stage.models[0].whole.visible]"
+    assert live.evaluate("page.player.playing") is False and live.evaluate(hidden) == [True, False]
+    asked = live.locator("#story .text").inner_text()
+    assert asked != said and not set(numbers(said)[-1:]) & set(numbers(asked))
+    live.evaluate(PLAY, 0.1)
+    assert live.evaluate(hidden) == [False, True]
+    assert live.locator("#story .text").inner_text() == said  # nothing was guessed: nothing to wait for
+
+
+@pytest.mark.parametrize(("step", "fates"), [(4, 3), (10, 3)])
+def test_a_picked_fate_is_judged_once_the_motion_has_shown_it(live, story, step, fates):
+    true = {4: "Only the faster one stays up.", 10: "It comes back."}[step]
+    for k in range(fates):
+        live.evaluate(ASK, step)
+        buttons = live.locator("#story .guess button")
+        assert buttons.count() == fates
+        name = buttons.nth(k).inner_text()
+        buttons.nth(k).click()
+        live.evaluate(PLAY, 0.1)
+        verdict = live.locator("#story .verdict")
+        assert not verdict.is_visible()
+        live.evaluate(PLAY, 3.5)
+        assert verdict.inner_text() == (f"As you guessed: {true}" if name == true else f"Not so: {true}")
+
+
+@pytest.mark.parametrize("step", [2, 5])
+def test_a_drawn_tilt_stays_beside_the_true_one_with_its_mean_error(live, story, step):
+    live.evaluate(ASK, step)
+    canvas = live.locator(".plot canvas").first
+    box = canvas.bounding_box()
+    live.mouse.move(box["x"] + 60, box["y"] + 50)
+    live.mouse.down()
+    for x in (90, 120, 150, box["width"] - 12):
+        live.mouse.move(box["x"] + x, box["y"] + 50)
+    live.mouse.up()
+    assert live.evaluate("page.player.t") == 0  # drawing does not seek
+    sketch = np.array(live.evaluate("page.plots.curves[0].sketch"))
+    level = sketch[-1, 1]
+    assert (np.diff(sketch[:, 0]) > 0).all() and 20 < level < 90
+    live.evaluate(PLAY, 6)
+    t, theta = column(live, "time"), np.degrees(column(live, "theta"))
+    inside = t <= sketch[-1, 0]
+    off = abs(np.interp(t, *sketch.T) - theta)[inside].mean()
+    assert numbers(live.locator("#story .verdict").inner_text()) == [pytest.approx(off, abs=0.06)]
+    low, high = live.evaluate("page.plots.curves[0].ranges[1]")
+    assert low < min(theta.min(), level) and max(theta.max(), level) < high
+    story(1)
+    assert live.evaluate("page.plots.curves[0].sketch") is None
+
+
+def test_a_link_to_a_step_has_the_speed_and_the_view_of_the_step(window, live_file):
+    with opened(window, live_file, "step=3") as page:
+        assert page.evaluate("[page.player.speed, page.stage.place]") == [0.25, "behind"]

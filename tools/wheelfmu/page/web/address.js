@@ -12,6 +12,10 @@ import {bodies, MOMENTS, momentsOf} from '#mechanics';
 const LONGEST = 4000;  // characters
 const REST = 300;      // ms between two changes of the address
 const PLAYING = 1000;  // the same while the clock runs: browsers refuse more than some hundred in half a minute
+const WORDS = {
+  true: 1,
+  false: 0
+};
 const NUMBER = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(deg)?$/;
 
 export const EMPTY = {
@@ -27,6 +31,7 @@ export const EMPTY = {
 function refuse(sentence) { throw new Error(sentence); }
 
 function textOf(name, value) {
+  if (variables[name]?.type === 'Boolean') return String(Boolean(value));
   const angle = Number((value * 180 / Math.PI).toPrecision(10));
   return variables[name]?.unit === 'rad' && degrees(angle) === value ? `${angle}deg` : String(value);
 }
@@ -47,6 +52,7 @@ export function typed(text, {name, unit, limits}) {
 
 /** The number of a text, within limits [lowest, highest]. */
 function numberOf(text, name, limits) {
+  if (variables[name]?.type === 'Boolean' && Object.hasOwn(WORDS, text)) return WORDS[text];
   const [, digits, unit] = NUMBER.exec(text) ?? refuse(`${name} = ${text.slice(0, 20)} is no number.`);
   const [low, high] = limits ?? refuse(`it names ${name.slice(0, 30)}, which cannot be set here.`);
   const value = unit ? degrees(Number(digits)) : Number(digits);

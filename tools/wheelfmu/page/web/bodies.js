@@ -3,15 +3,28 @@
 // axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
 // (in this order about z, y, x; x forward, y to the left, z up).
 import {colour} from '#dom';
-import {gyroscope} from '#mechanics';
-import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, pointArrow, showRibbon} from '#shapes';
+import {balance} from '#mechanics';
+import {bendTurn, dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, makeTurn, pointArrow, showRibbon} from '#shapes';
 import {before, contactOf, extent, slipOf} from '#table';
 import {THREE} from 'three';
 
 const [METAL, FACE] = [['#9aa2ac', '#6a7078', 40], ['#8d949f', '#8a9098', 60]].map(
     ([color, specular, shininess]) => ({color, specular, shininess}));
 const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
-const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
+const GOLD = {
+  color: '#c2a04e',
+  specular: '#8d7a45',
+  shininess: 60
+};
+const UPRIGHT = [Math.PI / 2, 0, 0];  // a cylinder's axis along z
+const ABOUT_E1 = {
+  weight: 0.5,
+  side: 0.7,
+  gyro: 0.9,
+  sum: 1.12
+};                  // radii of their arrows, in those of the wheel
+const COIN = 0.05;  // m, up to which a disc is a coin
+const BEND = 4;     // rad, of a moment m g r_0
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
@@ -31,9 +44,11 @@ function drawTyre(pen, accent) {
   fill(accent, ...[74, 177].map((y) => [0, y, 2048, 5]), ...[0, 2008].map((x) => [x, 0, 40, 256]));
 }
 
-/** Tyre, rim, spokes and hub about the axle z; marked spoke and mark on the tyre at angle 0. */
-function makeWheel(r_0, r, marked) {
+/** Tyre, and but for a hoop rim, spokes and hub, about the axle z; marked spoke and mark on the tyre at angle 0. */
+function makeWheel(r_0, r, marked, hoop) {
   const map = makeTexture(2048, 256, (pen) => drawTyre(pen, marked.color));
+  const ring = makeSolid(new TorusGeometry(r_0, r, 40, 180), {map, specular: '#26282c', shininess: 12});
+  if (hoop) return [ring];
   const inner = r_0 - 0.72 * r;
   const middle = 0.5 * (inner + 0.1 * r_0);
   const spokes = [0, 1, 2, 3, 4].map((i) => {
@@ -43,20 +58,45 @@ function makeWheel(r_0, r, marked) {
     return makeSolid(shape, i === 0 ? marked : METAL, place, [0, 0, angle]);
   });
   return [
-    makeSolid(new TorusGeometry(r_0, r, 40, 180), {map, specular: '#26282c', shininess: 12}),
+    ring,
     makeSolid(new TorusGeometry(inner, 0.42 * r, 16, 120), METAL),
     makeSolid(new CylinderGeometry(0.2 * r_0, 0.2 * r_0, 1.1 * r, 48), METAL, [0, 0, 0], UPRIGHT),
     ...spokes,
   ];
 }
 
-/** The thin disc, r = 0, with a marked radius at angle 0; it is drawn as thick as a coin. */
-function makeDisc(r_0, marked) {
-  const thickness = 0.024 * r_0;
+/** A disc with a round edge and a marked radius at angle 0; a coin has a core of another metal. */
+function makeDisc(r_0, r, marked, coin) {
   return [
-    makeSolid(new CylinderGeometry(r_0, r_0, thickness, 160), FACE, [0, 0, 0], UPRIGHT),
-    makeSolid(new BoxGeometry(0.995 * r_0, 0.16 * r_0, 1.3 * thickness), marked, [0.497 * r_0, 0, 0]),
-    makeSolid(new TorusGeometry(r_0, 0.5 * thickness, 12, 160), METAL),
+    makeSolid(new CylinderGeometry(r_0, r_0, 2 * r, 160), FACE, [0, 0, 0], UPRIGHT),
+    makeSolid(new BoxGeometry(0.995 * r_0, 0.16 * r_0, 2.2 * r), marked, [0.497 * r_0, 0, 0]),
+    makeSolid(new TorusGeometry(r_0, r, 16, 160), METAL),
+    ...(coin ? [makeSolid(new CylinderGeometry(0.7 * r_0, 0.7 * r_0, 2.1 * r, 120), GOLD, [0, 0, 0], UPRIGHT)] : []),
+  ];
+}
+
+/** How a wheel is drawn: its moment about the axle tells a solid disc from a wheel, and a wheel from a bare hoop. */
+export function lookOf({m, r_0, r, J_z, guided}) {
+  const part = J_z / (m * (r_0 + r) ** 2);
+  const disc = part < 0.55;
+  const kind = disc ? (r_0 + r < COIN ? 'coin' : 'disc') : part > 0.9 ? 'hoop' : 'wheel';
+  return {kind, r_0, r: Math.max(r, 0.012 * r_0), held: Boolean(guided)};
+}
+
+function makeBody({kind, r_0, r}, marked) {
+  const solid = kind === 'disc' || kind === 'coin';
+  return solid ? makeDisc(r_0, r, marked, kind === 'coin') : makeWheel(r_0, r, marked, kind === 'hoop');
+}
+
+/** The fork of a wheel carrier, upwards along e2 from the axle e3. */
+function makeFork({r_0, r}) {
+  const [half, top, thick] = [Math.max(1.8 * r, 0.14 * r_0), r_0 + 2.2 * Math.max(r, 0.1 * r_0), 0.06 * r_0];
+  const look = {color: colour('--body')};
+  return [
+    makeSolid(new CylinderGeometry(thick / 2, thick / 2, 2 * half, 24), look, [0, 0, 0], UPRIGHT),
+    ...[-half, half].map((z) => makeSolid(new BoxGeometry(thick, top, thick), look, [0, top / 2, z])),
+    makeSolid(new BoxGeometry(1.5 * thick, thick, 2 * half + thick), look, [0, top, 0]),
+    makeSolid(new CylinderGeometry(0.7 * thick, 0.7 * thick, 0.25 * r_0, 24), look, [0, top + 0.12 * r_0, 0]),
   ];
 }
 
@@ -72,26 +112,35 @@ function makeNamed(name, vector, radius, height, colour, beyond) {
 export class WheelModel {
   /** wheel: {name, parameters, colour, table, trace, phases}; size of the scene in m. */
   constructor(wheel, size) {
-    const {name, parameters: {r_0, r}} = wheel;
+    const {name, parameters} = wheel;
+    const look = lookOf(parameters);
+    const {r_0, r} = parameters;
     const radius = r_0 + r;
     Object.assign(
-        this, {wheel, size, r_0, r, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
+        this, {wheel, look, size, r_0, r, group: new THREE.Group(), path: new THREE.Group(), axes: new THREE.Group()});
     const marked = {color: wheel.colour, specular: '#222', shininess: 15};
-    this.body = new THREE.Group().add(...(r > 0.01 * r_0 ? makeWheel(r_0, r, marked) : makeDisc(r_0, marked)));
+    this.body = new THREE.Group().add(...makeBody(look, marked));
     this.body.name = `spin:${name}`;
     for (const [i, length] of [1.5, 1.5, 1.125].entries()) {
       const along = new THREE.Vector3().setComponent(i, length * radius);
       this.axes.add(...makeNamed(
           `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
     }
-    this.carrier = new THREE.Group().add(this.body, this.axes);
-    [this.force, this.slip, this.moment] =
-        ['--force', '--slide', '--moment'].map((name) => makeArrow(0.03 * r_0, colour(name)));
-    this.carrier.add(this.moment);
-    for (const part of [...this.moment.children, ...this.slip.children]) {  // seen through the wheel
+    this.carrier = new THREE.Group().add(this.body, this.axes, ...(look.held ? makeFork(look) : []));
+    [this.force, this.slip, this.weight, this.side, this.guide] =
+        ['--force', '--slide', '--weight', '--side', '--guide'].map((name) => makeArrow(0.03 * r_0, colour(name)));
+    this.guideName = makeLabel('M_guide', colour('--guide'), 0.3 * r_0);
+    for (const part of [this.slip, this.weight, this.side, this.guide].flatMap(
+             ({children}) => children)) {  // before the wheel
       Object.assign(part, {renderOrder: 910, castShadow: false});
       Object.assign(part.material, {depthTest: false, transparent: true});
     }
+    this.turns = Object.entries(ABOUT_E1).map(
+        ([name, part]) => [name, makeTurn(part * radius, 0.06 * radius, colour(`--${name}`))]);
+    this.moments = new THREE.Group().add(...this.turns.map(([, turn]) => turn));
+    const [e1, e2, e3] = [0, 1, 2].map((i) => new THREE.Vector3().setComponent(i, 1));
+    this.moments.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(e2, e3, e1));
+    this.carrier.add(this.moments, this.guide, this.guideName);
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
     this.spot = new THREE.Mesh(new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40), new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
@@ -99,7 +148,7 @@ export class WheelModel {
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
     [arrow.position.z, label.position.z] = [0.03 * radius, 0.24 * radius];
     this.uphill = new THREE.Group().add(arrow, label);
-    this.group.add(this.carrier, this.force, this.slip, this.spot, this.uphill, this.path);
+    this.group.add(this.carrier, this.force, this.slip, this.weight, this.side, this.spot, this.uphill, this.path);
     this.drawPath();
   }
 
@@ -121,16 +170,19 @@ export class WheelModel {
     this.past =
         [ribbon(all, accent, 1, 3, 0.95), ...marks(phases.slides, '--slide', 4), ...marks(phases.sticks, '--stick', 5)];
     const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
-    this.weight = N.reduce((sum, value) => sum + value, 0) / N.length || 1;
+    this.load = N.reduce((sum, value) => sum + value, 0) / N.length || 1;  // N, in the mean
+    const {M_guide_1 = [0], M_guide_2 = [0]} = table.shown;
+    this.held = Math.max(...M_guide_1.map((moment, i) => Math.hypot(moment, M_guide_2[i])));  // N m, at most
     this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1];
     dispose(this.path);
-    this.path.clear().add(ribbon(all, accent, 0.5, 1, 0.3), ...this.past);
+    this.whole = ribbon(all, accent, 0.5, 1, 0.3);
+    this.path.clear().add(this.whole, ...this.past);
   }
 
   /** The last point of the path at or before t. */
   point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
 
-  /** Pose, path, slip, force and gyroscopic moment at t. show: {path, axes, force, moment}. */
+  /** Pose, path, slip, force and balance about e1 at t. show: {path, axes, force, balance, future}. */
   update(t, show) {
     const {wheel: {table, parameters: {slope = 0, slope_direction: direction = 0}}, r_0, r} = this;
     const at = (name) => table.value(name, t);
@@ -140,6 +192,7 @@ export class WheelModel {
     this.body.rotation.z = phi;
     this.axes.visible = show.axes;
     this.path.visible = this.spot.visible = show.path;
+    this.whole.visible = show.future;
     for (const ribbon of this.past) {
       ribbon.visible = t >= ribbon.userData.begin;
       showRibbon(ribbon, this.point(t) - ribbon.userData.first);
@@ -155,14 +208,41 @@ export class WheelModel {
     const [along, across] = this.fastest > 0 ? [at('slip_x'), at('slip_y')] : [0, 0];
     const turned = new THREE.Vector3(along, across, 0).applyAxisAngle(THREE.Object3D.DEFAULT_UP, psi);
     pointArrow(this.slip, turned.multiplyScalar(long / this.fastest || 0));
-    // As long as the radius where it balances the weight at a lean of 15 degrees.
-    const moment = show.moment ? gyroscope(this.wheel.parameters, at) : [0, 0];
-    const {m, g = 9.81} = this.wheel.parameters;
-    pointArrow(this.moment, new THREE.Vector3(...moment, 0).multiplyScalar(long / (0.26 * m * g * r_0) || 0));
+    this.showBalance(show.balance, contact, at);
+    this.showGuide(show.force && this.held > 1e-9, at);
     this.force.visible = show.force && FORCE.every((name) => table.has(name));
     if (!this.force.visible) return;
     this.force.position.set(...contact, 0);
-    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(long / this.weight));
+    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(long / this.load));
+  }
+
+  /** The moment of the wheel carrier, across the axle. */
+  showGuide(shown, at) {
+    this.guide.visible = this.guideName.visible = shown;
+    if (!shown) return;
+    const moment = new THREE.Vector3(at('M_guide_1'), at('M_guide_2'), 0);
+    pointArrow(this.guide, moment.multiplyScalar(1.5 * (this.r_0 + this.r) / this.held));
+    this.guideName.position.copy(moment).multiplyScalar(1.15);
+    this.guideName.visible = this.guide.visible;
+  }
+
+  /** The moments about e1 as arrows about it, and at the contact the forces that two of them come from. */
+  showBalance(shown, contact, at) {
+    for (const part of [this.moments, this.weight, this.side]) part.visible = shown;
+    if (!shown) return;
+    const {m, g = 9.81, r_0, r} = this.wheel.parameters;
+    const moments = balance(this.wheel.parameters, at);
+    for (const [name, turn] of this.turns) bendTurn(turn, BEND * moments[name] / (m * g * r_0));
+    const [psi, theta] = [at('psi'), at('theta')];
+    const across = moments.side / (r_0 * Math.sin(theta) + r);
+    const forces = {
+      weight: new THREE.Vector3(0, 0, at('lambda_3')),
+      side: new THREE.Vector3(-across * Math.sin(psi), across * Math.cos(psi), 0),
+    };
+    for (const [name, force] of Object.entries(forces)) {
+      this[name].position.set(...contact, 0);
+      pointArrow(this[name], force.multiplyScalar(1.1 * (r_0 + r) / this.load));
+    }
   }
 }
 

@@ -1,11 +1,15 @@
 // The commands that make the same run outside of the page: fmpy's command line, Python with FMPy, and C.
 import {variables} from '#dom';
-import {STEP} from '#fmu';
 
 const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits
 
+const truth = (value, yes, no) => (value ? yes : no);
+/** [name, value] of what differs from the description, true and false in the words of a language. */
+const written = (given, ...words) =>
+    given.map(([name, value]) => [name, variables[name].type === 'Boolean' ? truth(value, ...words) : value]);
+
 /** fmpy: changes as an input file, each jump as two rows at one instant. */
-function byFmpy({values, changes, stop}, given) {
+function byFmpy({values, changes, stop}, given, interval) {
   const names = [...new Set(changes.map(({name}) => name))];
   const now = Object.fromEntries(names.map((name) => [name, values[name] ?? variables[name].start ?? 0]));
   const row = (t) => [instant(t), ...names.map((name) => now[name])].join(',');
@@ -17,17 +21,17 @@ function byFmpy({values, changes, stop}, given) {
   }
   const input = `printf '${[...rows, row(stop)].join('\\n')}\\n' >inputs.csv`;
   const options = [
-    'fmpy simulate wheel.fmu', `--stop-time ${stop}`, `--output-interval ${STEP}`,
-    ...(given.length ? [`--start-values ${given.flat().join(' ')}`] : []),
+    'fmpy simulate wheel.fmu', `--stop-time ${stop}`, `--output-interval ${interval}`,
+    ...(given.length ? [`--start-values ${written(given, 'true', 'false').flat().join(' ')}`] : []),
     ...(changes.length ? ['--input-file inputs.csv'] : []), '--output-file motion.csv'
   ];
   return [...(changes.length ? [input] : []), options.join(' \\\n  ')].join('\n');
 }
 
-function byPython({changes, stop}, given) {
-  const values = given.map(([name, value]) => `"${name}": ${value}`);
+function byPython({changes, stop}, given, interval) {
+  const values = written(given, 'True', 'False').map(([name, value]) => `"${name}": ${value}`);
   const list = changes.map(({t, name, value}) => `(${instant(t)}, "${name}", ${value})`);
-  const end = `stop_time=${stop}, output_interval=${STEP}, start_values={${values.join(', ')}}`;
+  const end = `stop_time=${stop}, output_interval=${interval}, start_values={${values.join(', ')}}`;
   if (!changes.length)
     return `from fmpy import simulate_fmu\n\nmotion = simulate_fmu("wheel.fmu", ${end})\nprint(motion["theta"][-1])`;
   return `from fmpy import read_model_description, simulate_fmu
@@ -37,7 +41,7 @@ reference = {v.name: v.valueReference for v in read_model_description("wheel.fmu
 
 
 def change(time, recorder):
-    while changes and changes[0][0] <= time + ${STEP / 2}:
+    while changes and changes[0][0] <= time + ${interval / 2}:
         _, name, value = changes.pop(0)
         recorder.fmu.setReal([reference[name]], [value])
     return True
@@ -47,10 +51,11 @@ motion = simulate_fmu("wheel.fmu", ${end}, step_finished=change)
 print(motion["theta"][-1])`;
 }
 
-function byC({changes, stop}, given, guid) {
-  const set = (name, value) => `set(${variables[name].reference}, ${value});`;
+function byC({changes, stop}, given, interval, guid) {
+  const set = (name, value) =>
+      `${variables[name].type === 'Boolean' ? 'set_boolean' : 'set'}(${variables[name].reference}, ${value});`;
   const start = given.map((pair) => `  ${set(...pair)}\n`);
-  const later = changes.map(({t, name, value}) => `    if (k == ${Math.round(t / STEP)}) ${set(name, value)}\n`);
+  const later = changes.map(({t, name, value}) => `    if (k == ${Math.round(t / interval)}) ${set(name, value)}\n`);
   const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
   return `// unzip wheel.fmu 'binaries/*' && cc run.c ./binaries/linux64/wheel.so -o run && ./run
 #include <stdio.h>
@@ -66,7 +71,8 @@ typedef struct {
 void* fmi2Instantiate(const char*, int, const char*, const char*, const callbacks*, int, int);
 int fmi2SetupExperiment(void*, int, double, double, int, double), fmi2EnterInitializationMode(void*);
 int fmi2ExitInitializationMode(void*), fmi2DoStep(void*, double, double, int), fmi2Terminate(void*);
-int fmi2SetReal(void*, const unsigned*, size_t, const double*), fmi2GetReal(void*, const unsigned*, size_t, double*);
+int fmi2SetBoolean(void*, const unsigned*, size_t, const int*), fmi2SetReal(void*, const unsigned*, size_t, const double*);
+int fmi2GetReal(void*, const unsigned*, size_t, double*);
 void fmi2FreeInstance(void*);
 
 static void report(void* e, const char* name, int status, const char* category, const char* text, ...) {
@@ -75,6 +81,7 @@ static void report(void* e, const char* name, int status, const char* category, 
 
 static void* wheel;
 static void set(unsigned reference, double value) { fmi2SetReal(wheel, &reference, 1, &value); }
+static inline void set_boolean(unsigned reference, int value) { fmi2SetBoolean(wheel, &reference, 1, &value); }
 
 int main(void) {
   static const callbacks functions = {report, calloc, free, NULL, NULL};
@@ -85,18 +92,22 @@ int main(void) {
   if (!(wheel = fmi2Instantiate("wheel", 1, "${guid}", "", &functions, 0, 0))) return 1;
 ${start.join('')}  fmi2SetupExperiment(wheel, 0, 0, 0, 0, 0);
   if (fmi2EnterInitializationMode(wheel) > 1 || fmi2ExitInitializationMode(wheel) > 1) return 1;
-  for (int k = 0; k < ${Math.round(stop / STEP)} && status < 2; ++k) {
-${later.join('')}    status = fmi2DoStep(wheel, k * ${STEP}, ${STEP}, 1);
+  for (int k = 0; k < ${Math.round(stop / interval)} && status < 2; ++k) {
+${later.join('')}    status = fmi2DoStep(wheel, k * ${interval}, ${interval}, 1);
     fmi2GetReal(wheel, shown, ${shown.length}, value);
-    printf("%.2f %.17g %.17g %.17g %.17g\\n", (k + 1) * ${STEP}, value[0], value[1], value[2], value[3]);
+    printf("%.2f %.17g %.17g %.17g %.17g\\n", (k + 1) * ${interval}, value[0], value[1], value[2], value[3]);
   }
   fmi2Terminate(wheel);
   fmi2FreeInstance(wheel);
 }`;
 }
 
-/** {label: text} for a plan {values, changes, stop}. */
-export function commands(plan, guid) {
+/** {label: text} for a plan {values, changes, stop}; interval: s from row to row. */
+export function commands(plan, interval, guid) {
   const given = Object.entries(plan.values).filter(([name, value]) => value !== variables[name].start);
-  return {fmpy: byFmpy(plan, given), Python: byPython(plan, given), C: byC(plan, given, guid)};
+  return {
+    fmpy: byFmpy(plan, given, interval),
+    Python: byPython(plan, given, interval),
+    C: byC(plan, given, interval, guid)
+  };
 }

@@ -7,10 +7,12 @@ import {before, contactOf, extent} from '#table';
 
 const DEGREES = 180 / Math.PI;
 const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels; on the left at the least
+const SMALL = 0.5;                                   // of a unit, below which values are in thousandths
 const MANY = 3;                                      // wheels, whose values still fit beside the title
 const [TITLE, VALUE] = [60, 52];                     // CSS pixels, of the title and of a value beside it
 const LETTER = 7.5;  // CSS pixels, of a digit below the title, with a share of the gap between values
-const BAR = 4;       // CSS pixels, of a slide
+const BAR = 4;       // CSS pixels, where held or sliding
+const DASHES = [5, 4];
 const FONT = '11px system-ui, sans-serif';
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 
@@ -19,17 +21,46 @@ const signed = (text) => text.replace('-', '−');
 
 /** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */
 const kind = (symbol, units, columns, what, point, more) => ({symbol, units, columns, what, point, ...more});
-const curve = (symbol, unit, digits, column, what, scale = 1) => kind(
-    symbol, ['s', unit], ['time', column], `${what} over time. Click or drag to go there`,
-    ([t, value]) => [t, scale * value], {digits});
+const curve = (symbol, unit, digits, columns, what, values, more) => kind(
+    symbol, ['s', unit], ['time', ...columns], `${what} over time. Click or drag to go there`,
+    ([t, ...all], wheel) => [t, ...values(all, wheel)], {digits, ...more});
+const guided = ({parameters}) => Boolean(parameters.guided);
+const upright = ({table}) => table.columns.theta.every((theta) => Math.abs(theta - Math.PI / 2) < 1e-9);
+/** Whether the speed of the centre and that of rolling are the subject: of a wheel in its plane. */
+const brakes = (wheel) => guided(wheel) || (wheel.phases.slides.length > 0 && upright(wheel));
+const acts =
+    ({table: {shown}}) => ['M_guide_1', 'M_guide_2'].some((name) => shown[name]?.some((moment) => moment !== 0));
+const moves = (wheels, name) => wheels.some(({table}) => {
+  const [low, high] = extent(table.shown[name]);
+  return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
+});
+/**
+ * fits(wheels): whether a curve belongs to these; small: the unit of a thousandth, where the values are small. A second
+ * value is dashed.
+ */
 const CURVES = [
-  curve('θ', '°', 1, 'theta', 'Tilt: angle between axle and vertical', DEGREES),
-  {
-    ...curve('ω_z', 'rad/s', 3, 'omega_z', 'Angular velocity about the axle'),
-    level: (wheel) => (wheel.J_x === wheel.J_y ? criticalSpin(wheel) : NaN)
-  },
-  curve('N', 'N', 0, 'lambda_3', 'Normal force of the ground'),
-  curve('E', 'J', 2, 'E', 'Total energy'),
+  curve(
+      'θ', '°', 1, ['theta'], 'Tilt: angle between axle and vertical; the lean is 90° − θ',
+      ([theta]) => [DEGREES * theta], {fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'theta')}),
+  curve('ω_z', 'rad/s', 3, ['omega_z'], 'Angular velocity about the axle', ([omega]) => [omega], {
+    fits: (wheels) => !wheels.some(brakes),
+    level: (wheel) => (wheel.J_x === wheel.J_y && !wheel.guided ? criticalSpin(wheel) : NaN)
+  }),
+  curve(
+      'v, ┄ −R ω_z', 'm/s', 2, ['X_O_dot', 'Y_O_dot', 'psi', 'theta', 'psi_dot', 'omega_z'],
+      'Speed of the centre along e1, and dashed that of rolling, which is −R ω_z for an upright wheel, R = r_0 + r,',
+      ([X_dot, Y_dot, psi, theta, psi_dot, omega_z], {parameters: {r_0, r}}) =>
+          [X_dot * Math.cos(psi) + Y_dot * Math.sin(psi),
+           r * Math.cos(theta) * psi_dot * Math.sin(theta) - (r_0 + r * Math.sin(theta)) * omega_z],
+      {fits: (wheels) => wheels.some(brakes)}),
+  curve(
+      'N', 'N', 0, ['lambda_3'], 'Normal force of the ground', ([N]) => [N],
+      {small: 'mN', fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'lambda_3')}),
+  curve(
+      'M_guide e_1, ┄ e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
+      'Moment of the wheel carrier on the wheel along e1, and dashed along e2,', (both) => both,
+      {fits: (wheels) => wheels.some((wheel) => guided(wheel) && acts(wheel))}),
+  curve('E', 'J', 2, ['E'], 'Total energy', ([E]) => [E], {small: 'mJ'}),
 ];
 /** even: both axes have one scale. */
 export const PORTRAITS = {
@@ -38,7 +69,7 @@ export const PORTRAITS = {
       'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
       (values) => values.map((value) => value * DEGREES)),
   spin: kind(
-      'ω_3 (ω_2)', ['rad/s', 'rad/s'], ['theta', 'psi_dot', 'omega_z'],
+      'ω_z (ω_2)', ['rad/s', 'rad/s'], ['theta', 'psi_dot', 'omega_z'],
       'Angular velocity about the axle over that about e2, which points up in the plane of the wheel. ' +
           'Without friction one curve, run to and fro',
       ([theta, psi_dot, omega_z]) => [psi_dot * Math.sin(theta), omega_z]),
@@ -83,14 +114,18 @@ class Diagram {
     this.values = make('output');
     this.canvas = make('canvas', {role: 'img'});
     this.choice = make('span', {className: 'segments', role: 'radiogroup', ariaLabel: 'Diagram'});
+    this.sketch = null;  // the reader's guess [[t, value], ...] in the units of the axes; `asks`: it can be drawn now
     const title = this.timed ? make('b', {}, make('i', {}, ...subscripted(this.kind.symbol))) : this.choice;
     const caption = make('figcaption', {}, title, this.unit, this.values);
     this.figure = make('figure', {className: this.timed ? 'plot' : 'plot portrait'}, caption, this.canvas);
     host.append(this.figure);
     if (!this.timed) return;
-    this.canvas.onpointermove = ({buttons, offsetX}) => buttons && player.seek(this.timeAt(offsetX));
+    this.canvas.onpointermove = ({buttons, offsetX, offsetY}) => {
+      if (buttons) this.asks ? this.sketchTo(offsetX, offsetY) : player.seek(this.timeAt(offsetX));
+    };
     this.canvas.onpointerdown = (event) => {
       this.canvas.setPointerCapture(event.pointerId);
+      this.last = null;
       this.canvas.onpointermove(event);
     };
   }
@@ -109,13 +144,18 @@ class Diagram {
    * Takes the wheels to show, and the kind of this name, or the first that their columns allow; without any it hides.
    */
   select(wheels, name = this.name) {
-    const showing = (kind) => wheels.filter(({table}) => kind.columns.every((column) => table.has(column)));
+    const showing = (kind) =>
+        (kind.fits?.(wheels) === false ? [] :
+                                         wheels.filter(({table}) => kind.columns.every((column) => table.has(column))));
     this.possible = Object.keys(this.kinds).filter((other) => showing(this.kinds[other]).length);
     this.figure.hidden = !this.possible.length;
     this.name = this.possible.includes(name) ? name : this.possible[0] ?? this.name;
     Object.assign(this, {all: wheels, wheels: showing(this.kind)});
     const [across, up] = this.kind.units;
-    this.unit.textContent = this.timed || across === up ? up : '';
+    const values = this.kind.small ? this.wheels.flatMap(({table}) => extent(table.shown[this.kind.columns[1]])) : [];
+    const small = Math.max(...values.map(Math.abs)) < SMALL && values.length > 0;
+    this.factor = small ? 1000 : 1;
+    this.unit.textContent = small ? this.kind.small : this.timed || across === up ? up : '';
     this.canvas.title = this.canvas.ariaLabel = this.kind.what;
     if (this.timed) return;
     const buttons = this.possible.map((other) => ({name: other, title: this.kinds[other].what}));
@@ -136,14 +176,16 @@ class Diagram {
   /** A wheel's point at t. */
   at(wheel, t) {
     const now = Math.min(t, wheel.table.end);
-    return this.kind.point(this.kind.columns.map((name) => wheel.table.value(name, now)), wheel);
+    return this.scaled(this.kind.point(this.kind.columns.map((name) => wheel.table.value(name, now)), wheel));
   }
+
+  scaled([x, ...all]) { return [x, ...all.map((value) => this.factor * value)]; }
 
   /** All points of a wheel with their instants {times, points}: its rows, or its path, which is denser. */
   line(wheel) {
     if (this.kind.even) return wheel.trace;
     const columns = this.kind.columns.map((name) => wheel.table.shown[name]);
-    const point = (t, i) => this.kind.point(columns.map((column) => column[i]), wheel);
+    const point = (t, i) => this.scaled(this.kind.point(columns.map((column) => column[i]), wheel));
     return {times: wheel.table.time, points: Array.from(wheel.table.time, point)};
   }
 
@@ -151,11 +193,12 @@ class Diagram {
   prepare(axis) {
     const {clientWidth: width, clientHeight: height} = this.canvas;
     if (this.figure.hidden || !width) return;
-    this.many = this.wheels.length > MANY || width < TITLE + VALUE * this.wheels.length;
+    this.lines = this.wheels.map((wheel) => this.line(wheel));
+    const count = this.lines.reduce((sum, {points: [point]}) => sum + point.length - 1, 0);
+    this.many = this.timed && (count > MANY || width < TITLE + 6 * this.kind.symbol.length + VALUE * count);
     this.figure.classList.toggle('many', this.many);
     Object.assign(this, {width, height, pen: clearCanvas(this.canvas, width, height)});
     Object.assign(this, {ink: colour('--ink'), paper: colour('--paper')});
-    this.lines = this.wheels.map((wheel) => this.line(wheel));
     this.left = LEFT;
     for (const again of this.kind.even ? [false, true] : [false]) {  // one scale: the limits follow the margin
       this.sizes = [width - this.left - RIGHT, height - TOP - BOTTOM];
@@ -169,7 +212,8 @@ class Diagram {
       if (faint) this.grid(pen);
       pen.rect(this.left, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
       pen.clip();
-      if (this.timed) this.bands(pen, faint ? 0.16 : 0.34);
+      if (faint && this.secret) continue;
+      if (this.timed) this.bands(pen, faint ? 0.4 : 1);
       pen.globalAlpha = faint ? 0.35 : 1;
       if (faint || this.timed) this.lines.forEach(({points}, k) => this.stroke(pen, k, points.length - 1));
     }
@@ -183,7 +227,9 @@ class Diagram {
     this.ranged = this.kind;
     this.ranges = [0, 1].map((side) => {
       if (this.timed && side === 0) return [start, end > start ? end : start + 1];
-      const [low, high] = extent(points.map((point) => point[side]));
+      const sketch = side ? this.sketch ?? [] : [];
+      const [low, high] = extent([...points, ...sketch].flatMap((point) => (side ? point.slice(1) : point[0])));
+      if (side && this.asks) return [0, 100];  // deg
       return kept ? widened(kept[side], low, high) : bounds(low, high);
     });
     if (!this.kind.even) return;
@@ -216,6 +262,25 @@ class Diagram {
 
   y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
+  /** The reader's guess goes on to a place of the canvas; what stood there before goes. */
+  sketchTo(x, y) {
+    const t = Math.min(this.player.end, Math.max(this.player.start, this.timeAt(x)));
+    const [[low, high], [, length]] = [this.ranges[1], this.sizes];
+    const value = low + Math.min(1, Math.max(0, 1 - (y - TOP) / length)) * (high - low);
+    const [from, to] = [Math.min(t, this.last ?? t), Math.max(t, this.last ?? t)];
+    this.last = t;
+    this.sketch =
+        [...this.sketch.filter(([other]) => other < from || other > to), [t, value]].sort(([a], [b]) => a - b);
+    this.draw(this.player.t);
+  }
+
+  /** The value of the guess at t, or NaN outside of it. */
+  guessed(t) {
+    const k = before(this.sketch.map(([other]) => other), t);
+    const [a, b] = [this.sketch[k], this.sketch[k + 1]];
+    return a && b ? a[1] + (t - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : NaN;
+  }
+
   timeAt(x) {
     const {start, end} = this.player;
     return start + ((x - this.left) / this.sizes[0]) * (end - start);
@@ -243,7 +308,7 @@ class Diagram {
     const values = this.wheels.map(({parameters}) => this.kind.level?.(parameters)).filter(Number.isFinite);
     const levels = [...new Set(values)].flatMap((value) => [-value, value]);
     Object.assign(pen, {strokeStyle: colour('--soft'), lineWidth: 1, textAlign: 'left', textBaseline: 'bottom'});
-    pen.setLineDash([5, 4]);
+    pen.setLineDash(DASHES);
     for (const value of levels.filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1])) {
       const y = Math.round(this.y(value)) + 0.5;
       pen.beginPath();
@@ -258,15 +323,15 @@ class Diagram {
     pen.setLineDash([]);
   }
 
-  /** Stick phases as bands, slides as bars on the axis, transitions as ticks at the top. */
+  /** Where the wheel is held, or slides: bars on the axis; transitions as ticks at the top. */
   bands(pen, strength) {
+    pen.globalAlpha = strength;
     for (const {phases} of this.wheels) {
-      Object.assign(pen, {globalAlpha: strength, fillStyle: colour('--stick')});
-      const spans = phases.sticks.map((span) => span.map((t) => this.x(t)));
-      for (const [left, right] of spans) pen.fillRect(left, TOP, right - left, this.sizes[1]);
-      Object.assign(pen, {globalAlpha: Math.min(1, 2.4 * strength), fillStyle: colour('--slide')});
-      for (const [begin, end] of phases.slides)
-        pen.fillRect(this.x(begin), TOP + this.sizes[1] - BAR, Math.max(1, this.x(end) - this.x(begin)), BAR);
+      for (const [name, spans] of [['--stick', phases.sticks], ['--slide', phases.slides]]) {
+        pen.fillStyle = colour(name);
+        for (const [begin, end] of spans)
+          pen.fillRect(this.x(begin), TOP + this.sizes[1] - BAR, Math.max(1, this.x(end) - this.x(begin)), BAR);
+      }
       pen.fillStyle = colour('--force');
       for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
     }
@@ -274,15 +339,31 @@ class Diagram {
 
   /** The line of wheel k up to its point `last`; over time with a cross where its motion ended. */
   stroke(pen, k, last) {
-    const points = this.lines[k].points.slice(0, last + 1).map(([x, y]) => [this.x(x), this.y(y)]);
-    Object.assign(pen, {lineWidth: 1.6, lineJoin: 'round', strokeStyle: this.wheels[k].colour}).beginPath();
-    for (const [x, y] of points) pen.lineTo(x, y);
-    const [x, y] = points.at(-1) ?? [];
-    for (const side of this.timed && this.wheels[k].ended ? [-4, 4] : []) {
+    const points = this.lines[k].points.slice(0, last + 1);
+    Object.assign(pen, {lineWidth: 1.6, lineJoin: 'round', strokeStyle: this.wheels[k].colour});
+    for (let part = 1; part < points[0]?.length; ++part) {
+      pen.setLineDash(part > 1 ? DASHES : []);
+      pen.beginPath();
+      for (const point of points) pen.lineTo(this.x(point[0]), this.y(point[part]));
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    if (!this.timed || !this.wheels[k].ended) return;
+    const [x, y] = [this.x(points.at(-1)[0]), this.y(points.at(-1)[1])];
+    pen.beginPath();
+    for (const side of [-4, 4]) {
       pen.moveTo(x - 4, y - side);
       pen.lineTo(x + 4, y + side);
     }
     pen.stroke();
+  }
+
+  drawSketch(pen) {
+    Object.assign(pen, {lineWidth: 2, strokeStyle: this.ink}).setLineDash(DASHES);
+    pen.beginPath();
+    for (const [t, value] of this.sketch) pen.lineTo(this.x(t), this.y(value));
+    pen.stroke();
+    pen.setLineDash([]);
   }
 
   /** The picture at t. */
@@ -297,27 +378,30 @@ class Diagram {
     pen.fillStyle = this.ink;
     if (this.timed) pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
     const present = this.wheels.map((wheel) => this.at(wheel, t));
-    present.forEach(([x, y], k) => {
+    if (this.sketch) this.drawSketch(pen);
+    present.forEach(([x, ...all], k) => all.forEach((y) => {
       Object.assign(pen, {lineWidth: 1, fillStyle: this.wheels[k].colour, strokeStyle: this.paper}).beginPath();
       pen.arc(this.x(x), this.y(y), 3.6, 0, 7);
       pen.fill();
       pen.stroke();
-    });
-    if (this.timed) this.show(present.map(([, value]) => value));
+    }));
+    if (this.timed) this.show(present.flatMap(([, ...all], k) => all.map((value) => [value, this.wheels[k].colour])));
   }
 
-  /** The values as numbers in the caption; of many wheels in a line below the title, with the digits that have room. */
+  /**
+   * The values [[number, colour], ...] in the caption; of many wheels in a line below the title, with the digits that
+   * have room.
+   */
   show(values) {
     const {many} = this;
     const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
     const least = size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0;
     const texts = (digits) =>
-        values.map((value) => (isFinite(value) ? signed(value.toFixed(digits).replace(/^-([0.]+)$/, '$1')) : '–'));
+        values.map(([value]) => (isFinite(value) ? signed(value.toFixed(digits).replace(/^-([0.]+)$/, '$1')) : '–'));
     let digits = Math.max(0, this.kind.digits - Number(many), least);
     while (many && digits > 0 && LETTER * texts(digits).join(' ').length > this.width) digits -= 1;
     this.values.replaceChildren(...texts(digits).map(
-        (text, i) =>
-            make('span', {style: `color: color-mix(in srgb, ${this.wheels[i].colour} 70%, var(--ink))`}, text)));
+        (text, i) => make('span', {style: `color: color-mix(in srgb, ${values[i][1]} 70%, var(--ink))`}, text)));
   }
 }
 
@@ -328,6 +412,19 @@ export class Plots {
     this.portrait = new Diagram(host, player, PORTRAITS);
     this.all = [...this.curves, this.portrait];
     new ResizeObserver(() => this.prepare()).observe(host);
+  }
+
+  /**
+   * Whether the future is a secret, until the reader has guessed; draws: it can be drawn into the diagram of the tilt,
+   * whose axis then goes from flat to beyond upright.
+   */
+  keepSecret(secret, draws = false) {
+    for (const diagram of this.all) diagram.secret = secret;
+    const [tilt] = this.curves;
+    tilt.asks = secret && draws;
+    if (secret) tilt.sketch = draws ? [[this.player.start, tilt.at(tilt.wheels[0], this.player.start)[1]]] : null;
+    tilt.canvas.classList.toggle('asks', tilt.asks);
+    this.prepare();
   }
 
   /** wheels: [{table, phases, trace, colour}], those that are shown. */

@@ -24,8 +24,10 @@ export function makeChoice(row, options, act) {
   return onChange((chosen) => buttons.forEach((button, i) => (button.ariaChecked = options[i].name === chosen)));
 }
 
+export const SUBSCRIPT = /_(crit|guide|max|slide|.)/;
+
 /** A text such as ω_z or ω_crit as nodes, with its subscript. */
-export const subscripted = (text) => text.split(/_(crit|.)/).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
+export const subscripted = (text) => text.split(SUBSCRIPT).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
 
 /** A canvas of this size in CSS pixels, cleared, and a pen in CSS pixels. */
 export function clearCanvas(canvas, width, height) {

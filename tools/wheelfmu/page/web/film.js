@@ -1,6 +1,6 @@
 // Pictures of the page: the scene with its labels above, the diagrams beneath, as one PNG or as a video, whose
 // pictures are drawn at instants of the motion and written into a WebM file with these instants.
-import {$, colour, make} from '#dom';
+import {$, colour, make, SUBSCRIPT} from '#dom';
 
 /** Kinds of video: the width in pixels, at most that of the scene on the screen, and frames per second. */
 export const FILMS = {
@@ -19,7 +19,7 @@ export async function encodes() {
 
 /** A text such as "ω_z rad/s" with its subscript. */
 function write(pen, text, x, y, size) {
-  text.split(/_(.)/).forEach((part, i) => {
+  text.split(SUBSCRIPT).forEach((part, i) => {
     const low = i % 2 === 1;
     pen.font = `${low ? 0.72 * size : size}px system-ui, sans-serif`;
     pen.fillText(part, x, low ? y + 0.22 * size : y);
@@ -44,7 +44,7 @@ function drawLabels(pen, {stage, shown}) {
 /** One picture of the page at the present instant, on a canvas that is made or used again. */
 export function compose(page, canvas = make('canvas')) {
   const {stage, plots, player} = page;
-  const ratio = stage.renderer.getPixelRatio();
+  const {ratio} = stage;
   const {clientWidth: width, clientHeight: height} = stage.canvas;
   const host = $('#plots').getBoundingClientRect();
   const scale = (width - GAP) / host.width;
@@ -122,16 +122,16 @@ function streamOf(canvas, rate) {
  * draw. kind: of FILMS; left(seconds): called before each picture with the time that the rest will take; false ends it.
  */
 export async function film(page, {width, rate}, left) {
-  const {player, stage: {canvas: scene, renderer}} = page;
+  const {player, stage} = page;
   const {start, end, speed, t} = player;
-  const [canvas, ratio] = [make('canvas'), renderer.getPixelRatio()];
+  const [canvas, ratio] = [make('canvas'), stage.ratio];
   const show = (instant) => {
     player.seek(instant);
     page.draw();
     compose(page, canvas);
   };
   player.pause();
-  renderer.setPixelRatio(Math.min(ratio, width / scene.clientWidth));
+  stage.ratio = Math.min(ratio, width / stage.canvas.clientWidth);
   show(start);
   const {add, end: finish, pictures} = streamOf(canvas, rate);
   const count = Math.floor((end - start) / speed * rate) + 1;
@@ -142,7 +142,7 @@ export async function film(page, {width, rate}, left) {
     add(k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
-  renderer.setPixelRatio(ratio);
+  stage.ratio = ratio;
   player.seek(t);
   await finish();
   return webm(canvas, pictures, 1000 * k / rate);

@@ -3,7 +3,7 @@
 import {variables} from '#dom';
 import {bytesOf, Table} from '#table';
 
-export const STEP = 0.01;  // s, between two communication points
+export const STEP = 0.01;  // s, between two instants at which the reader can change something
 const [WARNING, DISCARD, LAST_TIME] = [1, 2, 2];
 const ROOM = 64;  // values of one call, at most
 
@@ -62,9 +62,9 @@ export class Fmu {
 
   /**
    * One run from time 0. plan: {values: {name: start value}, changes: [{t, name, value}, ...] by rising t, stop,
-   * record: [names]}; the changes fall on communication points. Returns {table, ended: sentence or null}.
+   * record: [names], interval: s from row to row, a part of STEP}. Returns {table, ended: sentence or null}.
    */
-  run({values, changes, stop, record}) {
+  run({values, changes, stop, record, interval = STEP}) {
     this.messages = [];
     this.call('Reset');
     for (const [name, value] of Object.entries(values)) this.set(name, value);
@@ -75,16 +75,16 @@ export class Fmu {
     const rows = [];
     const note = (t) => rows.push([t, ...groups.flatMap((names) => [...this.exchange('Get', names)])]);
     note(0);
-    const steps = Math.round(stop / STEP);
+    const steps = Math.round(stop / interval);
     let [next, ended] = [0, null];
     for (let k = 0; k < steps && !ended; ++k) {
-      for (; next < changes.length && changes[next].t <= (k + 0.5) * STEP; ++next)
+      for (; next < changes.length && changes[next].t <= (k + 0.5) * interval; ++next)
         this.set(changes[next].name, changes[next].value);
-      const status = this.api.fmi2DoStep(this.unit, k * STEP, STEP, 1);
+      const status = this.api.fmi2DoStep(this.unit, k * interval, interval, 1);
       if (status > DISCARD) throw new Error(this.messages.at(-1) ?? `status ${status}`);
       if (status === DISCARD) ended = this.messages.at(-1) ?? 'The run has ended.';
       if (ended) this.call('GetRealStatus', LAST_TIME, this.cells);
-      note(ended ? this.view(Float64Array, this.cells, 1)[0] : (k + 1) * STEP);
+      note(ended ? this.view(Float64Array, this.cells, 1)[0] : (k + 1) * interval);
     }
     const columns = ['time', ...groups.flat()].map((name, i) => [name, Float64Array.from(rows, (row) => row[i])]);
     return {table: new Table(Object.fromEntries(columns)), ended};

@@ -43,8 +43,8 @@ export const START = [
 ];
 /** Of the road, and how the wheel is thrown onto it. */
 export const GRIP = [
-  knob('mu_max', 'μ', '', 'static', [0, 10], () => upTo(2)),
-  knob('mu_slide', 'μ_s', '', 'kinetic', [0, 10], () => upTo(2)),
+  knob('mu_max', 'μ_max', '', 'static', [0, 10], () => upTo(2)),
+  knob('mu_slide', 'μ_slide', '', 'kinetic', [0, 10], () => upTo(2)),
   knob('slip_x_start', 'u_x', 'm/s', 'along', [-100, 100], () => both(10)),
   knob('slip_y_start', 'u_y', 'm/s', 'across', [-100, 100], () => both(10)),
 ];

@@ -4,27 +4,54 @@ import {derive, EMPTY, Link, sameMotions} from '#address';
 import {variables} from '#dom';
 import {STEP} from '#fmu';
 import {limitsOf} from '#knobs';
-import {MOMENTS} from '#mechanics';
+import {MOMENTS, nutation} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
+import {extent} from '#table';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
-const SIGNALS = ['omega_z', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y'];
+const SIGNALS = [
+  'omega_z', 'theta_ddot', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y',
+  'M_guide_1', 'M_guide_2'
+];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
-const PAPER_RADIUS = 0.35;         // m, r_0 + r
+const POINTS = 40;
+const FINEST = 12;          // parts of STEP, at most
+const PAPER_RADIUS = 0.35;  // m, r_0 + r
 const NAMES = ['This wheel', 'Kept'];
+
+/** The part of STEP, s, that gives nutation and turn POINTS rows a period; a guided wheel has neither. */
+function intervalOf({columns: {theta, psi_dot, omega_z}}, wheel) {
+  if (wheel.guided) return STEP;
+  const turn = psi_dot.map((rate, i) => rate * Math.sin(theta[i]));
+  const [across, spin] = [turn, omega_z].map((rates) => Math.max(...extent(rates).map(Math.abs)));
+  const parts = Math.ceil(STEP * POINTS * Math.max(across, nutation(wheel) * spin) / (2 * Math.PI));
+  return STEP / Math.min(FINEST, Math.max(1, parts));
+}
 
 /**
  * What the reader has chosen: plan, what is done to the wheel; kept: the plan of the motion beside, or null; step 0, 1
- * ... of the story, if it is open; scene: the number of the one that was loaded. refusal, trouble: why an address or a
- * start cannot be; scaled: what a preset has set; wanted: whether the motion is still to be computed.
+ * ... of the story, if it is open; guess: what the reader expects of a step that asks, or null: {asks: not played yet,
+ * picked: number of the fate, told: whether the motion has shown it}; scene: the number of the one that was loaded.
+ * refusal, trouble: why an address or a start cannot be; scaled: what a preset has set; wanted: whether the motion is
+ * still to be computed.
  */
 export class LiveWheel {
   /** wheels: the presets. */
   constructor(page, fmu, wheels) {
-    Object.assign(
-        this, {page, fmu, plan: EMPTY.plan, kept: null, step: 0, open: true, scene: null, refusal: null, scaled: null});
+    Object.assign(this, {
+      page,
+      fmu,
+      plan: EMPTY.plan,
+      kept: null,
+      step: 0,
+      open: true,
+      scene: null,
+      refusal: null,
+      scaled: null,
+      guess: null
+    });
     this.steps = chapters(this.parameters());
     this.wheel = {name: 'live', label: NAMES[0]};
     page.bodies.push(this.wheel);
@@ -58,8 +85,11 @@ export class LiveWheel {
     return this.wheel.phases.slides.some(([begin, end]) => begin <= this.instant() && this.instant() < end);
   }
 
-  /** Whether the step of the story that is open draws the gyroscopic moment. */
-  get drawsMoment() { return this.open && Boolean(this.steps[this.step].moment); }
+  /** Whether the step of the story that is open shows the moments about e1, for a wheel of which they are all. */
+  get drawsBalance() {
+    const {J_x, J_y, guided} = this.wheel.parameters;
+    return this.open && Boolean(this.steps[this.step].balance) && J_x === J_y && !guided;
+  }
 
   /** The sign of the present spin omega_z: negative rolls towards +e1, 0 does not roll. */
   spin() { return Math.sign(this.wheel.table.value('omega_z', this.page.player.t)); }
@@ -92,6 +122,7 @@ export class LiveWheel {
     }
     page.plots.axis = axis;
     Object.assign(this, {wanted: true, scene: null, refusal: null, scaled: null});
+    this.tell();
   }
 
   /** A start value or parameter; a body's moments follow its mass and radii until one of them is set. */
@@ -103,6 +134,13 @@ export class LiveWheel {
     if (MOMENTS.includes(name)) plan.body = null;
     derive(plan);
     this.change('fitted');
+  }
+
+  /** Other start values, played from the start. */
+  start(values) {
+    this.plan.changes = [];
+    for (const [name, value] of Object.entries(values)) this.setStart(name, value);
+    this.page.player.set({t: 0, playing: true});
   }
 
   /** The moments of a body of this mass and size. */
@@ -147,7 +185,10 @@ export class LiveWheel {
     [this.wanted, this.trouble] = [false, null];
     const {wheel, plan: {values, changes}} = this;
     const begin = performance.now();
-    const {table, ended} = this.fmu.run({...this.plan, record: RECORD});
+    const run = (interval) => this.fmu.run({...this.plan, record: RECORD, interval});
+    let {table, ended} = run(STEP);
+    this.interval = intervalOf(table, this.parameters());
+    if (this.interval < STEP) ({table, ended} = run(this.interval));
     this.took = performance.now() - begin;
     const set = [...Object.entries(values), ...changes.map(({name, value}) => [name, value])];
     const friction = set.some(([name, value]) => HOLDING.includes(name) && value > 0);
@@ -165,14 +206,21 @@ export class LiveWheel {
 
   /** Shows a state: of a step of the story 0, 1 ..., or (null) of none. */
   apply({plan, kept, show, diagram, view, t}, step) {
-    const {page, steps: {[step]: {names, text} = {}}} = this;
+    const {page, steps: {[step]: {names, text, question} = {}}} = this;
+    this.tell();
     if (kept) this.load(kept);
     this.keep(Boolean(kept), names?.[1]);
     this.load(plan, names?.[0]);
     for (const [name, on] of Object.entries(show)) page.switches.flip(name, on);
     page.plots.portrait.choose(diagram);
     page.choose(view);
-    page.player.seek(t);
+    const {speed = 1, balance} = this.steps[step] ?? {};
+    if (question && t === 0) {
+      this.guess = {asks: true};
+      page.plots.keepSecret(true, !question.fates);
+    }
+    page.stage.stand(balance ? 'behind' : 'beside');
+    page.player.set({t, speed});
     [this.step, this.open, this.text] = [step ?? this.step, step !== null, text?.(...page.wheels)];
     [this.scene, this.refusal, this.scaled] = [null, null, null];
     this.show();
@@ -183,10 +231,33 @@ export class LiveWheel {
     const step = this.open ? this.step + by : this.step;
     if (!this.steps[step]) return;
     this.link?.leave();
-    const {state, speed = 1} = this.steps[step];
-    this.apply(state, step);
-    this.page.player.set({speed});
+    this.apply(this.steps[step].state, step);
+    if (!this.guess) this.page.player.play();
+  }
+
+  /** The reader expects one of the fates of the step, and the motion plays. */
+  pick(fate) {
+    this.guess.picked = fate;
     this.page.player.play();
+  }
+
+  /** The motion plays, and answers what the step asks. */
+  answer() {
+    const {guess, page: {player, plots}, steps, step} = this;
+    if (guess?.asks && (player.playing || player.t > 0)) {
+      guess.asks = false;
+      plots.keepSecret(false);
+    }
+    const guessed = guess?.picked !== undefined || plots.curves[0].sketch?.length > 1;
+    if (guess && !guess.asks) guess.told ||= !guessed || player.t >= steps[step].question.until;
+  }
+
+  /** Nothing is asked any more. */
+  tell() {
+    if (!this.guess) return;
+    this.guess = null;
+    this.page.plots.keepSecret(false);
+    this.page.plots.curves[0].sketch = null;
   }
 
   /** What the page begins with: its address, else the story. */
@@ -199,6 +270,7 @@ export class LiveWheel {
     } catch (fault) {
       this.trouble = fault.message;  // the wheel's own sentence about a start that cannot be
     }
+    this.answer();
     this.show();
     this.link?.frame();
   }

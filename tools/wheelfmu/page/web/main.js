@@ -1,5 +1,5 @@
 // The page: recorded wheels, a car's body, or the wheel itself (live), shown on one stage with one clock.
-import {ChassisModel, WheelModel} from '#bodies';
+import {ChassisModel, lookOf, WheelModel} from '#bodies';
 import {Player, setUpKeys, setUpSwitches, setUpTransport, showBands} from '#clock';
 import {Plots} from '#diagrams';
 import {$, bodies, colour, live, makeChoice, sources} from '#dom';
@@ -12,6 +12,8 @@ import {Stage} from '#stage';
 import {Table, traceOf} from '#table';
 import {setUpTaking} from '#take';
 import {THREE} from 'three';
+
+$('#blocked').remove();  // its sentence is for a browser that does not come so far
 
 const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
@@ -67,7 +69,7 @@ class Page {
     this.player.addEventListener('change', () => (this.stage.dirty = true));
     new ResizeObserver(() => this.layOut()).observe($('#stage'));
     this.live?.begin();
-    if (!CALM && this.player.t === this.player.start) this.player.play();
+    if (!CALM && this.player.t === this.player.start && !this.live?.guess?.asks) this.player.play();
     // The clock stands while the page is out of sight.
     document.addEventListener('visibilitychange', () => (this.ticked = undefined));
     requestAnimationFrame((now) => this.frame(now));
@@ -92,13 +94,13 @@ class Page {
     this.choose(this.choice);
   }
 
-  /** Another motion of a wheel, whose radii may have changed. */
+  /** Another motion of a wheel, whose look may have changed. */
   exchange(wheel, table) {
-    const {friction, parameters: {r_0, r}} = wheel;
-    Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, r_0)});
+    const {friction, parameters} = wheel;
+    Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, parameters.r_0)});
     const model = this.stage?.models.find((one) => one.wheel === wheel);
     if (!model) return;  // nothing is shown yet
-    if (model.r_0 !== r_0 || model.r !== r) return this.dress();
+    if (JSON.stringify(model.look) !== JSON.stringify(lookOf(parameters))) return this.dress();
     model.drawPath();
     this.choose(this.choice);
   }
@@ -140,6 +142,7 @@ class Page {
       models: this.stage.models.filter((model) => view.includes(model.wheel)),
       away: Math.max(1, 0.5 + (0.5 * box.getSize(new THREE.Vector3()).length()) / this.size),
       anchor: box.getCenter(new THREE.Vector3()).setZ(0.8 * this.radius),
+      heading: this.stage.place === 'behind' && this.switches.show.follow ? view[0].table.value('psi', t) : 0,
       up: new THREE.Vector3(0, 0, 1).applyEuler(new THREE.Euler(0, slope, slope_direction, 'ZYX')),
     };
   }
@@ -161,7 +164,7 @@ class Page {
 
   /** The bodies where they are at the present instant; nothing is drawn. */
   pose() {
-    const show = {...this.switches.show, moment: Boolean(this.live?.drawsMoment)};
+    const show = {...this.switches.show, balance: Boolean(this.live?.drawsBalance), future: !this.live?.guess?.asks};
     for (const model of this.stage.models) model.update(Math.min(this.player.t, model.wheel.table.end), show);
   }
 

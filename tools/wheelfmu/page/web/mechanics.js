@@ -53,18 +53,23 @@ export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
   return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
 }
 
-/**
- * The gyroscopic moment -Omega x H of a wheel with J_x = J_y along the carrier axes e1 and e2, N m; at(name): a
- * variable at one instant.
- */
-export function gyroscope({J_x, J_z}, at) {
-  const [theta, theta_dot, psi_dot, omega_z] = ['theta', 'theta_dot', 'psi_dot', 'omega_z'].map(at);
-  const excess = J_z * omega_z - J_x * psi_dot * Math.cos(theta);  // kg m2/s
-  return [-excess * psi_dot * Math.sin(theta), excess * theta_dot];
-}
+/** The rate at which a fast upright wheel nutates over its spin omega_z. */
+export const nutation = ({m, r_0, r, J_x, J_z}) =>
+    Math.sqrt(J_z * (J_z + m * (r_0 + r) ** 2) / (J_x * (J_x + m * (r_0 + r) ** 2)));
 
-/** The ground's moment about e2 through the centre, N m: -eta lambda_x, eta = r cos theta. */
-export function groundMoment({r}, at) {
-  const [theta, psi, lambda_1, lambda_2] = ['theta', 'psi', 'lambda_1', 'lambda_2'].map(at);
-  return -r * Math.cos(theta) * (lambda_1 * Math.cos(psi) + lambda_2 * Math.sin(psi));
+/**
+ * The moments about e1 through the centre of a wheel with J_x = J_y that nothing but weight and ground acts on, N m:
+ * of the normal force, which carries the weight r_0 cos theta beside the centre; of the ground's force across e1, at
+ * the height of the centre; and the gyroscopic one. They add up to J_x theta_ddot. at(name): a variable at one instant.
+ */
+export function balance({r_0, r, J_x, J_z}, at) {
+  const [psi, theta, psi_dot, omega_z, lambda_1, lambda_2, N] =
+      ['psi', 'theta', 'psi_dot', 'omega_z', 'lambda_1', 'lambda_2', 'lambda_3'].map(at);
+  const lambda_y = lambda_2 * Math.cos(psi) - lambda_1 * Math.sin(psi);
+  return {
+    weight: -N * r_0 * Math.cos(theta),
+    side: lambda_y * (r_0 * Math.sin(theta) + r),
+    gyro: -(J_z * omega_z - J_x * psi_dot * Math.cos(theta)) * psi_dot * Math.sin(theta),
+    sum: J_x * at('theta_ddot'),
+  };
 }

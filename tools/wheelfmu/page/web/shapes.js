@@ -40,6 +40,29 @@ export function pointArrow(arrow, vector) {
   arrow.quaternion.setFromUnitVectors(THREE.Object3D.DEFAULT_UP, vector.clone().divideScalar(length));
 }
 
+const ARC = 120;  // parts of a full turn
+
+/** A flat arrow about the axis z, from x towards y, of this radius and width in m; seen through what is before it. */
+export function makeTurn(radius, width, color) {
+  const material = new THREE.MeshBasicMaterial({color, side: THREE.DoubleSide, depthTest: false, transparent: true});
+  const band = new THREE.Mesh(new THREE.RingGeometry(radius - width / 2, radius + width / 2, ARC, 1), material);
+  const head = new THREE.Mesh(new THREE.CircleGeometry(1.3 * width, 3), material);
+  for (const part of [band, head]) part.renderOrder = 910;
+  return Object.assign(new THREE.Group().add(band, head), {userData: {band, head, radius, width}});
+}
+
+/** Bends an arrow of makeTurn by an angle in rad, below one turn; negative: the other way. */
+export function bendTurn(turn, angle) {
+  const {band, head, radius, width} = turn.userData;
+  const [size, way] = [Math.abs(angle), Math.sign(angle)];
+  const count = Math.max(0, Math.round((size - 1.3 * width / radius) / (2 * Math.PI) * ARC));  // up to the head
+  turn.visible = count > 0;
+  band.geometry.setDrawRange(way < 0 ? 6 * (ARC - count) : 0, 6 * count);
+  head.position.set(radius * Math.cos(angle), radius * Math.sin(angle), 0);
+  head.position.addScaledVector(new THREE.Vector3(Math.sin(angle), -Math.cos(angle), 0), way * 1.3 * width);
+  head.rotation.z = angle + way * Math.PI / 2;
+}
+
 /** A flat band on the ground along points [[x, y], ...], in layers one over the other. */
 export function makeRibbon(points, {width, height, layer, color, opacity}) {
   const [vertices, corners] = [[], []];
@@ -66,13 +89,14 @@ export const showRibbon = (ribbon, row) => ribbon.geometry.setDrawRange(0, 6 * M
 /** A short text that always faces the reader, such as uphill or e_1 with its subscript; height in m. */
 export function makeLabel(text, colour, height) {
   const [name, low = ''] = text.split('_');
-  const width = Math.max(128, 40 * name.length);
+  const width = Math.max(128, 40 * name.length) + 26 * Math.max(0, low.length - 1);
   const map = makeTexture(width, 96, (pen) => {
-    Object.assign(pen, {textBaseline: 'middle', textAlign: 'center', fillStyle: colour});
-    pen.font = 'italic 600 72px Georgia, "Times New Roman", serif';
-    pen.fillText(name, width / 2 - 14 * low.length, 48, width);
-    pen.font = '600 46px Georgia, "Times New Roman", serif';
-    pen.fillText(low, 86, 64);
+    Object.assign(pen, {textBaseline: 'middle', textAlign: 'left', fillStyle: colour});
+    const fonts = ['italic 600 72px', '600 46px'].map((font) => `${font} Georgia, "Times New Roman", serif`);
+    const lengths = [name, low].map((part, i) => Object.assign(pen, {font: fonts[i]}).measureText(part).width);
+    const left = Math.max(0, (width - lengths[0] - lengths[1]) / 2);
+    Object.assign(pen, {font: fonts[0]}).fillText(name, left, 48, width);
+    Object.assign(pen, {font: fonts[1]}).fillText(low, left + lengths[0], 64);
   });
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, transparent: true}));
   label.scale.set((height * width) / 96, height, 1);

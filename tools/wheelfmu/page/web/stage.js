@@ -1,11 +1,16 @@
 // The 3-D stage: ground, light, cameras, and one or more views side by side in one canvas. Fixed axes X, Y, Z, Z up.
-import {colour} from '#dom';
+import {$, colour} from '#dom';
 import {dispose, makeTexture} from '#shapes';
 import {OrbitControls, THREE} from 'three';
 
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-const GROUND = 60;                              // squares along the edge of the drawn ground, at the least
-const LENS = 34;                                // degrees, from top to bottom
+const GROUND = 60;  // squares along the edge of the drawn ground, at the least
+const LENS = 34;    // degrees, from top to bottom
+// Where the eye stands beside what it looks at, in sizes of the scene; `behind`, X is the heading.
+const EYES = {
+  beside: [1.5, -2.35, 1.0],
+  behind: [-3.2, -0.7, 0.75]
+};
 const SUN = new THREE.Vector3(1.4, -1.1, 3.6);  // where it stands, in sizes of the scene
 
 /** One square of the ground: lines about it and, finer, ten within it. */
@@ -21,14 +26,10 @@ export class Stage {
   /** size: m, how large the thing is that one looks at. */
   constructor(canvas, size) {
     Object.assign(this, {canvas, size, models: [], dirty: true});
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: devicePixelRatio < 2});
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    Object.assign(this.renderer.shadowMap, {enabled: true, type: THREE.PCFShadowMap});
-    this.renderer.setScissorTest(true);
+    this.renderer = this.makeRenderer();
     this.scene = new THREE.Scene();
     this.scene.fog = new THREE.Fog('#fff', 4 * size, 14 * size);
     this.camera = new THREE.PerspectiveCamera(LENS, 1, 0.02 * size, 60 * size);
-    this.camera.position.set(1.5 * size, -2.35 * size, 1.0 * size);
     this.eye = new THREE.PerspectiveCamera();
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, {maxPolarAngle: 1.54, minDistance: 0.8 * size, maxDistance: 12 * size});
@@ -45,8 +46,44 @@ export class Stage {
     this.road.add(this.ground);
     this.scene.add(this.road, new THREE.HemisphereLight('#ffffff', '#9aa3b2', 1.8));
     this.addSun();
+    this.stand('beside');
     this.zoom(size);
   }
+
+  /** The first view, of EYES. */
+  stand(place) {
+    if (this.place === place) return;
+    this.place = place;
+    this.camera.position.set(...EYES[place].map((part) => part * this.size));
+    this.controls.update();
+    this.controls.saveState();
+  }
+
+  /** What draws the scene, or null where there is no WebGL: all else of the page does without. */
+  makeRenderer() {
+    const note = (sentence) => Object.assign($('#blind'), {textContent: sentence, hidden: !sentence});
+    const {canvas} = this;
+    canvas.addEventListener('webglcontextlost', () => note('The graphics card is not to be had at the moment.'));
+    canvas.addEventListener('webglcontextrestored', () => {
+      note('');
+      this.dirty = true;
+    });
+    try {
+      const renderer = new THREE.WebGLRenderer({canvas, antialias: devicePixelRatio < 2});
+      renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+      Object.assign(renderer.shadowMap, {enabled: true, type: THREE.PCFShadowMap});
+      renderer.setScissorTest(true);
+      return renderer;
+    } catch {
+      note('No view in three dimensions: this browser offers no WebGL 2. All else goes on.');
+      return null;
+    }
+  }
+
+  /** Pixels of the picture to one of CSS. */
+  get ratio() { return this.renderer?.getPixelRatio() ?? 1; }
+
+  set ratio(value) { this.renderer?.setPixelRatio(value); }
 
   addSun() {
     this.sun = new THREE.DirectionalLight('#fff6e8', 2.3);
@@ -80,7 +117,7 @@ export class Stage {
     const [{x: left, y: top, width, height}, ...views] =
         [this.canvas, ...elements].map((element) => element.getBoundingClientRect());
     this.rectangles = views.map(({x, y, width: w, height: h}) => ({x: x - left, y: y - top, w, h}));
-    if (!this.renderer.getSize(new THREE.Vector2()).equals({x: width, y: height}))
+    if (this.renderer && !this.renderer.getSize(new THREE.Vector2()).equals({x: width, y: height}))
       this.renderer.setSize(width, height, false);
     this.dirty = true;
   }
@@ -101,13 +138,18 @@ export class Stage {
     this.ground.material.map.repeat.set(GROUND * times, GROUND * times);
   }
 
-  /** Places the eye, `away` times as far off, before a view of w by h pixels; on a slope it stays above the road. */
-  look(anchor, away, w, h) {
+  /**
+   * Places the eye, `away` times as far off and turned by the heading, before a view of w by h pixels; on a slope it
+   * stays above the road.
+   */
+  look(anchor, away, heading, w, h) {
     this.eye.copy(this.camera);
     // A narrow view needs a wider lens, or the wheel would leave it.
     Object.assign(this.eye, {far: 60 * this.size * away, aspect: w / h, fov: LENS * Math.min(1.7, Math.max(1, h / w))});
     this.eye.updateProjectionMatrix();
-    this.eye.position.multiplyScalar(away).add(anchor);
+    const turn = new THREE.Quaternion().setFromAxisAngle(THREE.Object3D.DEFAULT_UP, heading);
+    this.eye.position.multiplyScalar(away).applyQuaternion(turn).add(anchor);
+    this.eye.quaternion.premultiply(turn);
     const normal = new THREE.Vector3(0, 0, 1).applyQuaternion(this.road.quaternion);
     const missing = 0.25 * this.size - this.eye.position.dot(normal);
     if (missing <= 0) return;
@@ -116,17 +158,19 @@ export class Stage {
   }
 
   /**
-   * Draws views [{models, anchor, up}], vectors in the road's axes: each its own models about its own anchor, all
-   * `away` times as far off, and the road turned so that `up`, the vertical, is the scene's Z.
+   * Draws views [{models, anchor, up, heading}], vectors in the road's axes: each its own models about its own anchor,
+   * all `away` times as far off, and the road turned so that `up`, the vertical, is the scene's Z.
    */
   render(views, away) {
+    this.dirty = false;
+    if (!this.renderer) return;
     this.widen(away);
     this.rectangles.forEach(({x, y, w, h}, i) => {
-      const {models, anchor, up} = views[i];
+      const {models, anchor, up, heading} = views[i];
       for (const model of this.models) model.group.visible = models.includes(model);
       this.road.quaternion.setFromUnitVectors(up, THREE.Object3D.DEFAULT_UP);
       const there = anchor.clone().multiplyScalar(this.scale).applyQuaternion(this.road.quaternion);
-      this.look(there, away, w, h);
+      this.look(there, away, heading, w, h);
       this.sun.target.position.copy(there);
       this.sun.position.copy(there).addScaledVector(SUN, this.size);
       // Whole squares: the grid stands still.
@@ -136,6 +180,5 @@ export class Stage {
       this.renderer.setScissor(...place);
       this.renderer.render(this.scene, this.eye);
     });
-    this.dirty = false;
   }
 }

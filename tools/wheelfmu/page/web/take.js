@@ -84,7 +84,7 @@ export function setUpTaking(page) {
   const options = Object.entries(titles).map(([name, title]) => ({name, title, textContent: name}));
   const mark = makeChoice($('.tabs', host), options, (name) => {
     mark(name);
-    $('pre', host).textContent = commands(live.plan, live.fmu.guid)[name];
+    $('pre', host).textContent = commands(live.plan, live.interval, live.fmu.guid)[name];
   });
   mark('fmpy');
   host.addEventListener('beforetoggle', () => $('[aria-checked=true]', host).click());  // for the present plan
