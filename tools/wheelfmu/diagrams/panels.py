@@ -72,7 +72,7 @@ def draw_path(ax: Axes, scene: Scene) -> list[str]:
     ax.set_aspect("equal", adjustable="datalim")
     if scene.value("slope") > 0:
         down = scene.value("slope_direction") + np.pi
-        step = np.array([np.cos(down), np.sin(down)]) * 12.0
+        step = 12.0 * np.cos(down), 12.0 * np.sin(down)
         arrow = {"arrowstyle": "<|-", "color": style.GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (0.12, 0.83), step, "axes fraction", "offset points", arrowprops=arrow)
         ax.text(0.02, 0.93, "downhill", transform=ax.transAxes, color=style.GREY, fontsize=style.NOTE)
@@ -280,7 +280,7 @@ def write_rates(ax: Axes, scene: Scene) -> None:
     }  # fmt: skip
     lines = [np.column_stack([x, y])]
     for inset in ax.child_axes:
-        left, bottom, right, top = ax.transData.inverted().transform_bbox(inset.get_tightbbox()).extents
+        left, bottom, right, top = ax.transData.inverted().transform_bbox(inset.get_tightbbox() or inset.bbox).extents
         lines += [np.array([(left, h), (right, h)]) for h in np.linspace(bottom, top, 12)]
     write_beside(ax, marks, lines)
 
@@ -313,7 +313,8 @@ def _marks(ax: Axes, scene: Scene) -> dict[tuple[float, float], str]:
     start, low, high = np.degrees([scene["theta"][0], *ends])
     named = {start: f"$\\theta = {start:.4g}°$, start"}
     named |= {at: f"{at:.1f}°, {end}" for at, end in ((low, "lowest"), (high, "highest")) if abs(at - start) > 0.05}
-    texts, taken = {}, []
+    texts: dict[tuple[float, float], str] = {}
+    taken: list[Array] = []
     for angle in [*named, *np.arange(MARK_STEP * np.ceil(low / MARK_STEP), high, MARK_STEP)]:
         at: Any = tuple(float(np.interp(np.radians(angle), theta, rate)) for rate in (x, y))
         place = ax.transAxes.inverted().transform(ax.transData.transform(at))
@@ -357,7 +358,8 @@ def _time_axis(ax: Axes, scene: Scene) -> list[str]:
     """Time in s over the whole scene, and behind the curve the marks of friction and of slides, which it explains."""
     ax.set(xlim=scene["time"][[0, -1]], xlabel="time $t$ [s]")
     _scale(ax.xaxis, 6)
-    place, slide = {"transform": ax.get_xaxis_transform()}, style.colour("slide")
+    place: dict[str, Any] = {"transform": ax.get_xaxis_transform()}
+    slide = style.colour("slide")
     style.strip(ax, scene.edges, scene.mode == 0, style.colour("held"), top=True)
     ax.vlines(scene.reversals, 0.955, 1.0, color=style.INK, linewidth=0.8, zorder=2, **place)
     marks = [r"orange at the top: held at $\omega_z = 0$"] * bool((scene.mode == 0).any())

@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.textpath import TextPath
 
 from wheelfmu.diagrams import panels, style
@@ -279,7 +280,8 @@ def breadth(text: str, size: float) -> float:
 
 def wrapped(text: str, width: float, size: float) -> list[str]:
     """Lines with as many words as have room; a formula is a part of one word."""
-    lines, space = [[]], breadth(" ", size)
+    lines: list[list[str]] = [[]]
+    space = breadth(" ", size)
     for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", text):
         if lines[-1] and sum(breadth(one, size) + space for one in [*lines[-1], word]) > width:
             lines.append([])
@@ -296,7 +298,8 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     heights = [max(panel.height for panel, _ in row) for row in rows]
     fig = style.figure_mm(style.COLUMN if alone else style.PAGE, sum(heights) + 9.0 * (not alone))
     axes = fig.subplots(len(rows), columns, squeeze=False, height_ratios=heights)
-    rates, remarks = [], [kept(scene, drawn) for scene in scenes]
+    rates: list[tuple[Axes, Scene]] = []
+    remarks = [kept(scene, drawn) for scene in scenes]
     for ax, (panel, k) in zip(axes.flat, cells, strict=False):
         scene = scenes[k]
         remarks[k] += panel.draw(ax, scene.moving)
@@ -317,8 +320,9 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     lines = caption(scenes, remarks, width / style.MM - 2 * MARGIN, size)
     foot = (3.0 + PITCH * len(lines)) * style.MM
     fig.set_size_inches(width, height + foot)
-    fig.set_layout_engine("constrained", rect=(0, foot / (height + foot), 1, height / (height + foot)))
-    fig.get_layout_engine().execute(fig)
+    layout = ConstrainedLayoutEngine(rect=(0, foot / (height + foot), 1, height / (height + foot)))
+    fig.set_layout_engine(layout)
+    layout.execute(fig)
     fig.set_layout_engine("none")  # the texts beside a curve need the places of the panels
     for ax in fig.axes:
         if ax.get_aspect() == 1:  # anew from the data: limits of another width would be kept if they are nearly right
@@ -364,7 +368,9 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
         friction = int(scene.value("s") > 0)
         for panel in every:
             name = f"diagram_{panel.name}_{('free', 'friction')[friction]}"
-            wanted.append((out / (f"fig_{panel.figures[friction]}" if paper else name), [scene], [panel], paper))
+            if paper and panel.figures:
+                name = f"fig_{panel.figures[friction]}"
+            wanted.append((out / name, [scene], [panel], paper))
     return wanted
 
 

@@ -51,7 +51,7 @@ def measured(wheel, start: dict[str, str], times: np.ndarray, truth, scales: np.
     """A row per method and tolerance, with its error or why it has none; times are medians of repetitions in turns."""
     from wheelfmu.fmu.trust import trust
 
-    rows = []
+    rows: list[dict] = []
     for method, more in METHODS.items():
         for tolerance in TOLERANCES:
             found = wheel.motion(start | more, times, tolerance)

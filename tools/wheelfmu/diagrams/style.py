@@ -6,8 +6,8 @@ contrast. `colours.json` has them, and that of each quantity, also for the brows
 """
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import matplotlib.style
@@ -56,14 +56,14 @@ def axes_mm(fig: Figure, left: float, bottom: float, width: float, height: float
 def strip(ax: Axes, edges: ArrayLike, shown: ArrayLike, color: str, top: bool = False) -> None:
     """A mark at the lower or upper margin of a time axis where `shown`, between each two edges."""
     low, high = (1.0 - STRIP, 1.0) if top else (0.0, STRIP)
-    heights, place = np.where(shown, high, low), {"transform": ax.get_xaxis_transform()}
+    heights = np.where(shown, high, low)
+    place: dict[str, Any] = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(heights, edges, baseline=low, fill=True, color=color, linewidth=0, zorder=1, **place))
 
 
-def note(ax: Axes, text: str, at: Sequence[float], shift: Sequence[float], **how: object) -> None:
+def note(ax: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **how: Any) -> None:
     """Small text beside the data point `at`, moved by `shift` in typographic points."""
-    look = {"fontsize": NOTE, "textcoords": "offset points"} | how
-    ax.annotate(text, at, xytext=shift, **look)
+    ax.annotate(text, at, xytext=shift, **{"fontsize": NOTE, "textcoords": "offset points"} | how)
 
 
 def save(fig: Figure, stem: Path, dpi: int = 300) -> list[Path]:

@@ -75,6 +75,8 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         self.reals = [v.name for v in outputs if v.type == "Real"]
         self.integers = [v.name for v in outputs if v.type == "Integer"]
         self.indicator_count = description.numberOfEventIndicators
+        self.messages: list[Message] = []
+        self.component: int | None = None
         self.on_message: Callable[[Message], None] | None = None
         self.kind, self.time = CO_SIMULATION, 0.0
 

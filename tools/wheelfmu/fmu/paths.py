@@ -31,5 +31,5 @@ def build_target(name: str) -> Path:
 
 def copy_checkout(place: Path) -> None:
     """The files of the project, without anything that is built or installed."""
-    copy = f"git ls-files -coz --exclude-standard | xargs -0 cp --parents -t '{place}'"
-    subprocess.run(["bash", "-c", copy], cwd=ROOT, check=False)  # a file may be deleted
+    copy = 'git ls-files -coz --exclude-standard | xargs -0 cp --parents -t "$0"'
+    subprocess.run(["bash", "-c", copy, place], cwd=ROOT, check=False)  # a file may be deleted

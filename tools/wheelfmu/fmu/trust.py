@@ -51,7 +51,8 @@ class Wheel:
         number = {v.name: v.valueReference for v in self.description.modelVariables}
         self.read = (c_uint * 4)(*(number[name] for name in HEADLINE)), 4
         of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
-        self.fmu, self.log = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of), []
+        self.fmu = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of)
+        self.log: list[tuple[int, str]] = []
         self.callbacks = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda *of: self.log.append((of[3], of[4].decode())))
 
@@ -89,9 +90,10 @@ class Wheel:
 
     def timed(self, start: dict[str, str], times: Array, tolerance: float, repeats: int = 1) -> tuple[float, float]:
         """Least processor times of a run's calls of fmi2DoStep, and of as many empty calls, which are Python's."""
-        functions = [STEP(cast(f, c_void_p).value) for f in (self.fmu.dll.fmi2DoStep, self.fmu.dll.fmi2GetVersion)]
-        plan, costs = [*zip(times.tolist(), np.diff(times).tolist(), strict=False)], []
-        while len(costs) < repeats and sum(map(sum, costs)) < LONG:
+        functions = [cast(f, STEP) for f in (self.fmu.dll.fmi2DoStep, self.fmu.dll.fmi2GetVersion)]
+        plan = [*zip(times.tolist(), np.diff(times).tolist(), strict=False)]
+        costs: list[tuple[float, float]] = []
+        while len(costs) < repeats and sum(sum(cost) for cost in costs) < LONG:
             self.begin(start, tolerance, logging=False)
             marks = [thread_time()]
             for function in functions:  # the second ignores what it is given

@@ -119,8 +119,8 @@ def make_box(body: Body, wheels: list[Body], box: tuple[float, float, float] | N
         apart = np.array([[wheel.columns[name][0] for name in ("X_O", "Y_O")] for wheel in wheels])
         along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
         least = 2 * max(wheel.parameters["r_0"] + wheel.parameters["r"] for wheel in wheels)
-        size = (max(np.ptp(along), least), max(0.8 * np.ptp(across), 0.5 * least), 0.7 * least)
-    return replace(body, columns=columns, size=tuple(float(edge) for edge in size))
+        size = max(float(np.ptp(along)), least), max(0.8 * float(np.ptp(across)), 0.5 * least), 0.7 * least
+    return replace(body, columns=columns, size=size)
 
 
 def shape_of(columns: dict[str, Array]) -> tuple[float, float]:

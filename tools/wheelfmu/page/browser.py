@@ -5,6 +5,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
@@ -24,7 +25,7 @@ def chromium(*flags: str) -> Iterator[Browser]:
         browser.close()
 
 
-def surroundings(browser: Browser, **look: object) -> BrowserContext:
+def surroundings(browser: Browser, **look: Any) -> BrowserContext:
     """Offline, and with pages that stand still at their start."""
     found = browser.new_context(offline=True, reduced_motion="reduce", **look)
     found.set_default_timeout(PATIENCE)

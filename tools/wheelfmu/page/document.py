@@ -31,11 +31,11 @@ def base64_of(data: bytes) -> str:
 def library() -> tuple[str, str]:
     """three.js as the text of a module, and its notice."""
     package = distribution("nicegui")
-    text = Path(package.locate_file(THREE)).read_text(encoding="utf-8")
-    revision = re.search(r'const \w+="(1\d\d)"', text)
-    notice = f"three.js r{revision[1]}, Copyright (c) 2010-2025 three.js authors, "
+    text = Path(str(package.locate_file(THREE))).read_text(encoding="utf-8")
+    (revision,) = re.findall(r'const \w+="(1\d\d)"', text)
+    notice = f"three.js r{revision}, Copyright (c) 2010-2025 three.js authors, "
     notice += f"as bundled by NiceGUI {package.version}:\n"
-    notice += package.read_text("licenses/LICENSE")
+    notice += package.read_text("licenses/LICENSE") or ""
     return re.sub(r"\n//# sourceMappingURL=.*", "", text), notice.replace("--", "-")
 
 
@@ -69,8 +69,8 @@ def encoded(body: Body) -> dict:
 
 def wheel_itself(wasm: Path) -> dict:
     """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
-    guid = re.search(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid[1], "wheels": wheels(), "bodies": ready_bodies()}
+    (guid,) = re.findall(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid, "wheels": wheels(), "bodies": ready_bodies()}
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:

@@ -55,6 +55,7 @@ def oldest(name: str, library: lief.Binary) -> str:
 def signed(data: bytes, library: lief.MachO.Binary) -> bool:
     """The code directory of the ad-hoc signature holds the SHA-256 of every page of the library."""
     start = library.fat_offset
+    assert library.code_signature is not None
     blob = start + library.code_signature.data_offset
     _, _, count = struct.unpack_from(">III", data, blob)
     slots = [struct.unpack_from(">II", data, blob + 12 + 8 * k) for k in range(count)]

@@ -42,7 +42,9 @@ def run_wasm(program: Path) -> str:
     store.set_wasi(configuration)
     linker = wasmtime.Linker(store.engine)
     linker.define_wasi()
-    linker.instantiate(store, wasmtime.Module.from_file(store.engine, program)).exports(store)["_start"](store)
+    begin = linker.instantiate(store, wasmtime.Module.from_file(store.engine, program)).exports(store)["_start"]
+    assert isinstance(begin, wasmtime.Func)
+    begin(store)
     return printed.read_text()
 
 

@@ -86,7 +86,8 @@ class Master:
 def repeated(solve: Solve, seconds: float) -> tuple[list[float], Array, dict[str, int]]:
     """Seconds of each repetition, for `seconds` in all, but not fewer than LEAST_RUNS of a run that is not long; the
     last one's outputs and counts."""
-    costs, spent = [], 0.0
+    costs: list[float] = []
+    spent = 0.0
     while len(costs) < MOST_RUNS and (spent < seconds or (len(costs) < LEAST_RUNS and spent < LONG)):
         cost, rows, counts = solve()
         costs.append(cost)

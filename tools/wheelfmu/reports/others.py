@@ -6,6 +6,7 @@ Each comparison is a row: source, scene, both values, their difference, and its 
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Mapping
 from io import StringIO
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from wheelfmu.truth.exact_motions import measured_critical_spin
-from wheelfmu.truth.motion import Library
+from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.others import wheels
 from wheelfmu.truth.others.kane import distance
 from wheelfmu.truth.others.wheels import read
@@ -37,7 +38,7 @@ def digits(*values: float, places: int = 12) -> str:
     return ", ".join(f"{round(value, places) + 0.0:.{places}f}" for value in values)  # no -0
 
 
-def ends(table: dict, *names: str, places: int = 8) -> str:
+def ends(table: Mapping[str, np.ndarray] | Run, *names: str, places: int = 8) -> str:
     return digits(*(table[name][-1] for name in names), places=places)
 
 

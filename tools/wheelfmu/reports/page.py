@@ -29,7 +29,7 @@ from wheelfmu.publishing.markdown import number, page, said
 from wheelfmu.truth.motion import Library
 
 RESULTS = ROOT / "docs" / "results"
-Row = Mapping[str, object]
+Row = dict[str, Any]
 Tables = dict[str, pd.DataFrame]
 Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib")
@@ -53,7 +53,7 @@ class Part:
 
     @property
     def words(self) -> str:
-        return self.measure.__doc__.splitlines()[0]
+        return (self.measure.__doc__ or "").splitlines()[0]
 
     def __call__(self, report: Report) -> dict[str, Any]:
         found = self.rows(report) if self.axes else self.measure(report)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -34,7 +35,7 @@ FRICTION = {"s": 0.03}  # m
 TIME, ENERGY = "time $t$ [s]", "energy $E$ [J]"
 
 
-def run(report: Report, stop: float = 10.0, h: float = 0.01, inputs: Schedule | None = None, **start: float) -> Run:
+def run(report: Report, stop: float = 10.0, h: float = 0.01, inputs: Schedule | None = None, **start: Any) -> Run:
     return report.library.simulate(np.arange(round(stop / h) + 1) * h, inputs=inputs, **start)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
@@ -23,7 +25,7 @@ def sheet(layout: str, height: float = 70.0) -> tuple[Sheet, list[Axes]]:
 
 
 def label(
-    ax: Axes, x: str, y: str, title: str = "", log: str = "", legend: object = None, columns: int = 1, **limits: object
+    ax: Axes, x: str, y: str, title: str = "", log: str = "", legend: Any = None, columns: int = 1, **limits: Any
 ) -> None:
     """log: the axes that are logarithmic, out of "xy"; legend: where it stands."""
     ax.set(xlabel=x, ylabel=y, **{f"{axis}scale": "log" for axis in log}, **limits)

@@ -93,7 +93,8 @@ def time_at(runs: pd.DataFrame, method: str, error: float) -> float:
     points = points[points["best_us"] < points["best_us"].cummin().shift(fill_value=np.inf)]
     if points.empty:
         return nan
-    return exp(np.interp(log(error), *np.log(points[["error", "best_us"]].to_numpy(float)).T, left=nan))
+    errors, times = np.log(points[["error", "best_us"]].to_numpy(float)).T
+    return exp(np.interp(log(error), errors, times, left=nan))
 
 
 def over(runs: pd.DataFrame, method: str, other: str) -> np.ndarray:

@@ -58,7 +58,7 @@ def sliding(report: Report) -> pd.DataFrame:
     run, split = manoeuvres("suspended")["abs"], car_judges.SPLIT
     table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
     forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}
-    rows = []
+    rows: list[tuple[str, str, float, float | None]] = []
     for name, form in forms.items():
         rows.append((f"stopping distance, {WAYS[name]}", "m", suspended.way(table, run, name), form(table, run)))
     found = car_judges.judge(CAR.drive(report.fmus, split).whole, split)

@@ -9,14 +9,19 @@ from wheelfmu.truth.motion import Library
 from wheelfmu.truth.reference import Start, Wheel
 from wheelfmu.truth.scenes import SCENES, Scene
 
-NAMES = ("fast rolling", "fast spin the other way", "near flat", "thin disc", "general inertia")
+NAMES: tuple[str, ...] = ("fast rolling", "fast spin the other way", "near flat", "thin disc", "general inertia")
 NAMES += ("general inertia, friction", "light friction", "heavy friction", "heavy friction, J_x = J_y")
 NAMES += ("past upright", "pushed", "pushed, general inertia", "braked")
 # The ground may pull in all of them.
 CASES = {name: replace(SCENES[name], start={**SCENES[name].start, "keep_contact": True}) for name in NAMES}
-KINDS = (("X_O", "Y_O", "Z_O"), ("psi", "theta", "phi"), ("X_O_dot", "Y_O_dot", "Z_O_dot", "slip_x", "slip_y"))
-KINDS += (("psi_dot", "theta_dot", "phi_dot", "omega_z"),)
-KINDS += (("lambda_1", "lambda_2", "lambda_3", "lambda_x", "lambda_y"), ("E",))
+KINDS = [
+    ("X_O", "Y_O", "Z_O"),
+    ("psi", "theta", "phi"),
+    ("X_O_dot", "Y_O_dot", "Z_O_dot", "slip_x", "slip_y"),
+    ("psi_dot", "theta_dot", "phi_dot", "omega_z"),
+    ("lambda_1", "lambda_2", "lambda_3", "lambda_x", "lambda_y"),
+    ("E",),
+]
 
 
 def error(library: Library, scene: Scene, tolerance: float | None = None, least: float = 0.0, **changes) -> float:

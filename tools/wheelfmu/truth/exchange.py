@@ -47,7 +47,10 @@ class Run:
 
     def __init__(self, wheel: FMU2Wheel, rtol: float, inputs: Callable[[float], dict[str, float]]) -> None:
         self.wheel, self.rtol, self.inputs = wheel, rtol, inputs
-        self.t, self.events, self.changed, self.ended, self.rhs = 0.0, [], [], None, 0
+        self.events: list[float] = []
+        self.changed: list[bool] = []
+        self.ended: float | None = None
+        self.t, self.rhs = 0.0, 0
         self.at(0.0, wheel.x())
 
     def at(self, t: float, x: Array) -> None:

@@ -30,7 +30,7 @@ def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarra
     def above_ground(_t: float, y: np.ndarray) -> float:
         return y[2]
 
-    above_ground.terminal = True
+    above_ground.terminal = True  # type: ignore[attr-defined]
     times_out = np.linspace(0, end, 501)
     run = solve_ivp(rate, (0, end), papers_start(), "DOP853", times_out, events=above_ground, rtol=1e-9, atol=1e-9)
     return run.t, run.y.T, Paper(WHEEL, run.y.T).energy

@@ -123,7 +123,8 @@ def run(library: Library, values: Values, times: Sequence[float], tolerance=None
             return Run({}, wheel.sentences, status, None, 0.0)
         names = ("t", *wheel.reals, *(f"{name}_dot" for name in rates), *wheel.integers)
         read = wheel.reader(wheel.reals), wheel.rates(rates), lambda: wheel.getInteger(wheel.refer(*wheel.integers))
-        rows, asked = [], set(times)
+        rows: list[tuple[float, ...]] = []
+        asked = set(times)
         for t in (times[0], *sorted({*times[1:], *(t for t in inputs.jumps if times[0] < t < times[-1])})):
             if rows:
                 before = perf_counter()

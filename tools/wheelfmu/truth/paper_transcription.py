@@ -311,7 +311,7 @@ class Carried(Paper):
         return bordered, np.concatenate([right, np.zeros_like(right[..., :2])], axis=-1)
 
 
-def solved(paper: Paper, scenes: np.ndarray, load: Mapping | None = None) -> np.ndarray:
+def solved(paper: Paper, scenes: np.ndarray, load: Mapping | np.ndarray | None = None) -> np.ndarray:
     """q_ddot, lambda and tau row by row, with each scene's law and load, or another load (complex too)."""
     load = scenes["load"] if load is None else load
     brake = load["brake"]

@@ -63,7 +63,7 @@ def random_slide(random: np.random.Generator) -> Scene:
     start |= {"mu_max": mu_max, "mu_slide": mu_max * random.choice([1, random.uniform(0.4, 1), random.uniform(0.4, 1)])}
     if random.random() < 0.5:
         start |= dict(zip(("slip_x_start", "slip_y_start"), random.normal(0, 1, 2), strict=True))
-    pieces = []
+    pieces: list[tuple[float, dict]] = []
     if random.random() < 0.5:
         pieces = [(0.0, {name: tuple(random.uniform(-9, 9, 2)) for name in ("F_X", "F_Y", "F_Z")})]
         pieces[0][1].update({name: tuple(random.uniform(-2, 2, 2)) for name in ("M_1", "M_2", "M_3")})

@@ -91,7 +91,7 @@ def free(bound: float) -> tuple[tuple[str, float], ...]:
 FREE = free(10.0)
 
 
-def resting(degrees: float) -> dict[str, float]:
+def resting(degrees: float) -> Values:
     return tilted(degrees, phi_dot_start=0.0)
 
 

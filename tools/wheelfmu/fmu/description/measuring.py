@@ -31,7 +31,8 @@ UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
 GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
-SCENES = ({}, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW}, {**LAW, **GUIDED, "phi_dot_start": 5e-4})
+PLAIN: dict[str, float] = {}
+SCENES = (PLAIN, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW}, {**LAW, **GUIDED, "phi_dot_start": 5e-4})
 # Co-simulation alone slides: a slip changes what the force of the ground depends on.
 ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
 SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
@@ -48,7 +49,7 @@ class Unit:
         self.fmu = instantiate_fmu(folder, self.description, kind)
         self.fmu.setDebugLogging(False, [])
         for name, value in scene.items():
-            self.set(name, value)
+            self.put(name, value)
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
         if kind == "ModelExchange":
@@ -61,7 +62,7 @@ class Unit:
         found = [self.variables[name] for name in names]
         return np.array([getattr(self.fmu, f"get{v.type}")([v.valueReference])[0] for v in found], float)
 
-    def set(self, name: str, value: float) -> None:
+    def put(self, name: str, value: float) -> None:
         v = self.variables[name]
         if name in self.states:
             x = (c_double * len(self.states))()
@@ -81,7 +82,7 @@ class Unit:
         for known in knowns:
             (value,) = self.get([known])
             after = self.get_with(known, value, names)
-            self.set(known, value)
+            self.put(known, value)
             if after is None:
                 continue
             found.setdefault("", set()).add(known)
@@ -97,7 +98,7 @@ class Unit:
         others = (value * 1.01 + 1e-3, value * 0.99 - 1e-3) if v.type == "Real" else (first if value == last else last,)
         for other in others:
             with suppress(FMICallException):
-                self.set(known, other)
+                self.put(known, other)
                 return self.get(names)
         return None
 
@@ -137,7 +138,7 @@ def event_indicators(fmu: Path) -> int:
 
 def measured(fmu: Path) -> Dependencies:
     """All dependencies of the FMU, by section of ModelStructure."""
-    found: Dependencies = defaultdict(lambda: defaultdict(set))
+    found: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     with TemporaryDirectory() as folder:
         extract(str(fmu), folder)
         for scene in (without_zeros(folder, changed) for changed in SCENES):
@@ -155,6 +156,6 @@ def measured(fmu: Path) -> Dependencies:
     knowns = {v.name for v in variables if v.causality in ("parameter", "input")}
     if stuck := knowns - found["InitialUnknowns"][""]:
         raise SystemExit(f"No scene lets {', '.join(sorted(stuck))} be changed.")
-    for section in found.values():
-        del section[""]
+    for of_section in found.values():
+        del of_section[""]
     return found

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import re
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Mapping
 from xml.etree import ElementTree
 
 # Of each section of ModelStructure and each unknown in it: the names that it depends on. An unknown that is not listed
 # may depend on all, as in FMI.
-Dependencies = dict[str, dict[str, Iterable[str]]]
+Dependencies = Mapping[str, Mapping[str, Collection[str]]]
 # What a master relies on: a library and a description that differ here do not belong together.
 BINDING = ("ModelExchange", "CoSimulation", "UnitDefinitions", "ModelVariables", "ModelStructure")
 TAG = re.compile(r'<ScalarVariable name="([^"]*)"(?: valueReference="\d+")?')
@@ -24,7 +24,7 @@ def names_by_index(root: ElementTree.Element) -> Callable[[str], list[str]]:
     """Reads indices of the present numbering, or names, as names; what is gone is left out."""
     old: dict[str, str] = {}
     for v in root.iter("ScalarVariable"):
-        name, reference = v.get("name"), v.get("valueReference")
+        name, reference = v.attrib["name"], v.get("valueReference")
         if name in old:
             raise SystemExit("modelDescription.xml has two variables of one name.")
         old[name] = name
@@ -54,7 +54,7 @@ def dependencies_of(root: ElementTree.Element, names: Callable[[str], list[str]]
 
 def unknowns_of(root: ElementTree.Element, names: Callable[[str], list[str]]) -> dict[str, list[str]]:
     """The unknowns of each section of ModelStructure; derivatives in their order there, new ones last."""
-    variables = {v.get("name"): v for v in root.iter("ScalarVariable")}
+    variables = {v.attrib["name"]: v for v in root.iter("ScalarVariable")}
     state_of = {name: state for name, v in variables.items() for state in names(v[0].get("derivative", ""))}
     known = [n for row in root.iterfind("ModelStructure/Derivatives/Unknown") for n in names(row.get("index"))]
     derivatives = [name for name in dict.fromkeys([*known, *state_of]) if name in state_of]

@@ -25,7 +25,7 @@ ROOT = HERE.parents[3]
 
 project, author = "wheel.fmu", "the maintainers of wheel.fmu"
 copyright = "the maintainers of wheel.fmu, BSD-3-Clause"  # noqa: A001 - Sphinx's name for it
-release = re.search(r"VERSION (\d+\.\d+\.\d+)", (ROOT / "CMakeLists.txt").read_text())[1]
+(release,) = re.findall(r"VERSION (\d+\.\d+\.\d+)", (ROOT / "CMakeLists.txt").read_text())
 root_doc = "README"
 extensions = ["myst_nb"]
 exclude_patterns = ["build", "results", ".*"]

@@ -45,7 +45,7 @@ def model() -> RollingDisc:
     body.central_inertia = inertia(body.frame, J_x, J_z, J_y)  # symbrim's y is the axle
     disc.define_kinematics()
     disc.define_loads()
-    fixed, F_X, F_Y, F_Z, M_1, M_2, M_3, tau = disc.ground.frame, *LOADS
+    fixed, (F_X, F_Y, F_Z, M_1, M_2, M_3, tau) = disc.ground.frame, LOADS
     weight = body.mass * sp.Symbol("g")
     force = F_X * fixed.x - F_Y * fixed.y + (weight - F_Z) * fixed.z
     moment = M_1 * disc.tire.longitudinal_axis + M_2 * disc.tire.upward_radial_axis

@@ -6,7 +6,6 @@ Symbols, defaults and units are those of the paper's (27)-(33); SI throughout.
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, inf, nextafter, pi, sin
-from typing import Self
 
 Vector = tuple[float, float, float]
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -72,7 +71,7 @@ class Inputs:
     jumps: tuple[float, ...] = field(default=())
     brake: Callable[[float], float] = released
 
-    def before(self, stop: float) -> Self:
+    def before(self, stop: float) -> "Inputs":
         """The same inputs up to a jump at `stop`: there and later, their values just before it."""
         if not self.jumps:
             return self

@@ -113,8 +113,8 @@ class Contacts:
         psi_dot, _, phi_dot = angle_rates(R[2], (wx, wy, wz))
         F, M, v = self.inputs.force(t), carrier_moment(R[2], self.inputs.moment(t)), state[10:13]
         power = F[0] * v[0] + F[1] * v[1] + F[2] * v[2] + M[0] * wx + M[1] * wy + M[2] * wz
-        turning = (-q1 * wx - q2 * wy - q3 * wz, q0 * wx + q2 * wz - q3 * wy)
-        turning += (q0 * wy + q3 * wx - q1 * wz, q0 * wz + q1 * wy - q2 * wx)
+        turning = [-q1 * wx - q2 * wy - q3 * wz, q0 * wx + q2 * wz - q3 * wy]
+        turning += [q0 * wy + q3 * wx - q1 * wz, q0 * wz + q1 * wy - q2 * wx]
         loss = -self.road.mu_slide * now.push.N * state[SPEED] if now.push else 0.0
         a = to_fixed(R, now.a)
         return [*(q / 2 for q in turning), *alpha, *v, *a, psi_dot, phi_dot, power, now.tau * wz, loss], now

@@ -25,7 +25,7 @@ TOLERANCE = 1e-13
 def read_table(name: str) -> dict[str, NDArray[np.float64]]:
     """Columns of `name`.csv by name: paper_free, paper_friction, paper_friction_events."""
     table = np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True)
-    return {column: table[column] for column in table.dtype.names}
+    return {column: table[column] for column in table.dtype.names or ()}
 
 
 def solution(scene: str) -> Solution:
