@@ -19,9 +19,9 @@ constexpr double loosest = 1e-8;
 // Longest step over that of a motion that is stepped through: every turn of the run repeats these few steps.
 constexpr double shortening = 5.0 / 6;
 // In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps,
-// and a wheel that swings less than largest_rest is in steady motion. largest_break: how much a state may change within
-// the longest step by what breaks the symmetry, which rounding does too.
-constexpr double least_swing = 0.01, largest_rest = 0.003, largest_break = 0.1;
+// and a wheel that swings less than largest_steady is in steady motion. largest_break: how much a state may change
+// within the longest step by what breaks the symmetry, which rounding does too.
+constexpr double least_swing = 0.01, largest_steady = 0.003, largest_break = 0.1;
 
 }  // namespace
 
@@ -44,14 +44,14 @@ bool Orbit::maps(const solver::Problem& problem, double t, const double* y, doub
 
 Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
                            solver::Solver& solver) {
-  double own[states] = {};  // psi, phi, X_O and Y_O are zero
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) own[i] = y0[i];
+  double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = y0[i];
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   problem.longest_step *= shortening;
   *this = Orbit();
   std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
-  if (rests(problem, own)) return result_ = Result::steady;
-  result_ = follow(problem, pass, own, solver);
+  if (is_steady(problem, from_zero)) return result_ = Result::steady;
+  result_ = follow(problem, pass, from_zero, solver);
   counters_ = solver.counters();
   return result_;
 }
@@ -124,7 +124,7 @@ bool Orbit::unfold(const solver::Problem& problem, Result kind) {
 // Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
 bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   double y[states], rate[states], image[states];
-  read_own(T2_ - since, y);
+  read_integrated(T2_ - since, y);
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
   for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
@@ -136,7 +136,7 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
 // and no event occurs; or it leans without consequence.
 // With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
 // state repeats for ever.
-bool Orbit::rests(const solver::Problem& problem, const double* y0) {
+bool Orbit::is_steady(const solver::Problem& problem, const double* y0) {
   const double h = 1e-4 * std::sin(y0[WHEEL_THETA]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
   problem.derivative(problem.owner, 0, y0, rate);
@@ -158,22 +158,22 @@ bool Orbit::rests(const solver::Problem& problem, const double* y0) {
   lean(-h, behind);
   const bool indifferent =
       y0[WHEEL_OMEGA_1] == 0 && rate[WHEEL_OMEGA_1] == 0 && ahead[WHEEL_OMEGA_1] == 0 && behind[WHEEL_OMEGA_1] == 0;
-  if (indifferent) return keep_rest(problem, y0, rate, problem.longest_step);
+  if (indifferent) return keep_steady(problem, y0, rate, problem.longest_step);
   const double stiffness = (behind[WHEEL_OMEGA_1] - ahead[WHEEL_OMEGA_1]) / (2 * h);
   if (!(stiffness > 1e-3 * slowest * slowest)) return false;
   const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / stiffness + std::fabs(y0[WHEEL_OMEGA_1]) / std::sqrt(stiffness);
   const double most_weight =
       std::fmax(weights[WHEEL_THETA], std::fmax(std::fabs(along[WHEEL_OMEGA_2]) * weights[WHEEL_OMEGA_2],
                                                 std::fabs(along[WHEEL_OMEGA_3]) * weights[WHEEL_OMEGA_3]));
-  if (!(swing * most_weight < largest_rest)) return false;
-  return keep_rest(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[WHEEL_PSI])));
+  if (!(swing * most_weight < largest_steady)) return false;
+  return keep_steady(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[WHEEL_PSI])));
 }
 
 // Keeps the circle (or straight line) of a steady motion, of which any piece is a half: that of this length, s.
-bool Orbit::keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length) {
+bool Orbit::keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length) {
   T2_ = length;
-  std::copy_n(y0, states, first_);
-  first_[WHEEL_OMEGA_1] = 0;
+  std::copy_n(y0, states, at_T1_);
+  at_T1_[WHEEL_OMEGA_1] = 0;
   std::copy_n(rate, states, steady_rate_);
   return unfold(problem, Result::steady);
 }

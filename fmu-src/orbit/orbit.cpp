@@ -7,32 +7,36 @@
 
 namespace orbit {
 
-bool Orbit::start_at(const solver::Problem& problem, const double* y0) {
-  half_ = {};
-  lead_.psi_sum = y0[WHEEL_PSI];
-  lead_.phi_sum = y0[WHEEL_PHI];
-  lead_.place = place_of(y0);
-  lead_.turn = std::polar(1.0, y0[WHEEL_PSI]);
+bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_turn) {
+  latest_half_ = {};
+  start_.psi_sum = y0[WHEEL_PSI];
+  start_.phi_sum = y0[WHEEL_PHI];
+  start_.place = place_of(y0);
+  start_.turn = std::polar(1.0, y0[WHEEL_PSI]);
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
   const double t = 0.6 * T2_;
-  double own[states], rate[states], y[states];
-  read_own(t, own);
+  double integrated[states], rate[states], y[states];
+  read_integrated(t, integrated);
   read(t, y);
-  problem.derivative(problem.owner, t, own, rate);
-  set_place(rate, lead_.turn * place_of(rate));
-  return maps(problem, t, own, t, y, rate);
+  problem.derivative(problem.owner, t, integrated, rate);
+  set_place(rate, start_.turn * place_of(rate));
+  const double turn = std::fabs(at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI]),
+               roll = std::fabs(at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI]);
+  if (!maps(problem, t, integrated, t, y, rate)) return false;
+  until_ = ends() ? T2_ : most_turn / (std::fmax(turn, roll) / (T2_ - T1_));
+  return true;
 }
 
 // What the sums need, from the states at T1 and T2.
 void Orbit::take_half() {
-  half_ = {};
-  read_own(T1_, first_);
-  read_own(T2_, second_);
-  delta_ = std::remainder(second_[WHEEL_PSI] - first_[WHEEL_PSI], std::numbers::pi);
-  displacement_ = (place_of(second_) - place_of(first_)) * std::polar(1.0, -first_[WHEEL_PSI]);
+  latest_half_ = {};
+  read_integrated(T1_, at_T1_);
+  read_integrated(T2_, at_T2_);
+  delta_ = std::remainder(at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI], std::numbers::pi);
+  displacement_ = (place_of(at_T2_) - place_of(at_T1_)) * std::polar(1.0, -at_T1_[WHEEL_PSI]);
   pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
-  first_turn_ = std::polar(1.0, first_[WHEEL_PSI]);
-  mirror_turn_ = std::polar(1.0, 2 * second_[WHEEL_PSI]);
+  turn_at_T1_ = std::polar(1.0, at_T1_[WHEEL_PSI]);
+  mirror_turn_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
 }
 
 // The k halves before it are the integrated one and its mirror image in turn. A pair of them turns the path by 2 delta;
@@ -42,32 +46,26 @@ Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.begin = begin_of(k);
   half.next = begin_of(k + 1);
-  const double n = std::floor(0.5 * k), turn = second_[WHEEL_PSI] - first_[WHEEL_PSI],
-               roll = second_[WHEEL_PHI] - first_[WHEEL_PHI];
+  const double n = std::floor(0.5 * k), turn = at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI],
+               roll = at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI];
   half.mirrored = k != 2 * n;
   const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
   const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
   Complex way = pair_ * quotient * turned;
   if (half.mirrored) way += displacement_ * pairs_turn;
-  half.place = lead_.place + lead_.turn * (place_of(first_) + way * first_turn_);
-  half.turn = lead_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
-  half.psi_sum = lead_.psi_sum + (half.mirrored ? 2 * second_[WHEEL_PSI] + (k - 1) * turn : k * turn);
-  half.phi_sum = lead_.phi_sum + (half.mirrored ? 2 * second_[WHEEL_PHI] + (k - 1) * roll : k * roll);
+  half.place = start_.place + start_.turn * (place_of(at_T1_) + way * turn_at_T1_);
+  half.turn = start_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
+  half.psi_sum = start_.psi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PSI] + (k - 1) * turn : k * turn);
+  half.phi_sum = start_.phi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PHI] + (k - 1) * roll : k * roll);
   return half;
 }
 
 const Orbit::Half& Orbit::half_of(double t) const {
-  if (t >= half_.begin && t < half_.next) return half_;
+  if (t >= latest_half_.begin && t < latest_half_.next) return latest_half_;
   double k = std::floor((t - T1_) / (T2_ - T1_));
   if (t < begin_of(k)) k -= 1;
   if (t >= begin_of(k + 1)) k += 1;
-  return half_ = half_at(k);
-}
-
-double Orbit::fastest_turn() const {
-  const double turn = std::fabs(second_[WHEEL_PSI] - first_[WHEEL_PSI]),
-               roll = std::fabs(second_[WHEEL_PHI] - first_[WHEEL_PHI]);
-  return std::fmax(turn, roll) / (T2_ - T1_);
+  return latest_half_ = half_at(k);
 }
 
 // y from the frame of the integrated half to the fixed axes; way: from the start of the half to O.
@@ -81,24 +79,26 @@ void Orbit::turn_by(const Half& half, Complex way, double* y) {
 void Orbit::read_circle(double t, double* y) const {
   const double half = 0.5 * steady_rate_[WHEEL_PSI] * t,
                shortened = half == 0 ? 1 : std::sin(half) / half;  // chord over arc
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y[i] = first_[i];
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y[i] = at_T1_[i];
   y[WHEEL_PSI] = steady_rate_[WHEEL_PSI] * t;
   y[WHEEL_PHI] = steady_rate_[WHEEL_PHI] * t;
   set_place(y, place_of(steady_rate_) * (t * shortened) * std::polar(1.0, half));
 }
 
 // In the frame of the integrated motion.
-void Orbit::read_own(double t, double* y) const { result_ == Result::steady ? read_circle(t, y) : track_.read(t, y); }
+void Orbit::read_integrated(double t, double* y) const {
+  result_ == Result::steady ? read_circle(t, y) : track_.read(t, y);
+}
 
 void Orbit::read(double t, double* y) const {
   if (result_ != Result::unfolded || t <= T2_) {
-    read_own(t, y);
-    return turn_by(lead_, place_of(y), y);
+    read_integrated(t, y);
+    return turn_by(start_, place_of(y), y);
   }
   const Half& half = half_of(t);
   const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
   track_.read(half.mirrored ? T2_ - since : T1_ + since, y);
-  Complex way = place_of(y) - place_of(half.mirrored ? second_ : first_);
+  Complex way = place_of(y) - place_of(half.mirrored ? at_T2_ : at_T1_);
   if (half.mirrored) {
     way = std::conj(way);
     y[WHEEL_OMEGA_1] = -y[WHEEL_OMEGA_1];

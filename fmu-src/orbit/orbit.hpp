@@ -30,9 +30,9 @@ namespace orbit {
 
 class Orbit {
  public:
-  // unfolded: read() is valid at every t >= 0: the motion never ends.
+  // unfolded: the motion never ends.
   // steady: a circle or a straight line for ever.
-  // ended: event() happened at end_time(), in the first nutation; read() is valid up to there.
+  // ended: by event(), in the first nutation.
   // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
   //   that have not the symmetry. The caller then steps through the motion from its start.
   enum class Result { refused, unfolded, steady, ended };
@@ -45,19 +45,20 @@ class Orbit {
   // anew before anything else is asked of it; its counters are those of this run. A function of problem,
   // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
   Result build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
-  // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0 (after build, with zeros). False where
-  // the right-hand side depends on them.
-  bool start_at(const solver::Problem& problem, const double* y0);
+  // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0. False where the right-hand side
+  // depends on them. It can be read until it ends, or psi or phi has turned by `most_turn`, rad.
+  bool enter(const solver::Problem& problem, const double* y0, double most_turn);
+  void leave() { until_ = nowhere; }
 
-  // The state (out, 8 entries) at t >= 0.
+  // The state (out, 8 entries) at 0 <= t <= until().
   void read(double t, double* y) const;
-  double end_time() const { return result_ == Result::ended ? T2_ : solver::never; }  // s; infinite where it never ends
+  double until() const { return until_; }  // s
+  bool is_entered() const { return until_ != nowhere; }
+  bool ends() const { return result_ == Result::ended; }
   int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
   const solver::Counters& counters() const { return counters_; }
   double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; unfolded only
-  // rad/s, the larger of the mean rates of psi and phi; unfolded or steady.
-  double fastest_turn() const;
 
   // s, when an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
   // each mirror image.
@@ -65,6 +66,7 @@ class Orbit {
   double first_time() const { return first_time_; }
 
  private:
+  static constexpr double nowhere = -solver::never;
   using Complex = std::complex<double>;
   static constexpr int states = Track::states;
   static Complex place_of(const double* y) { return {y[WHEEL_X_O], y[WHEEL_Y_O]}; }
@@ -85,8 +87,8 @@ class Orbit {
   // building.cpp
   static bool maps(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
                    const double* expected);
-  bool rests(const solver::Problem& problem, const double* y0);
-  bool keep_rest(const solver::Problem& problem, const double* y0, const double* rate, double length);
+  bool is_steady(const solver::Problem& problem, const double* y0);
+  bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
   solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
@@ -95,7 +97,7 @@ class Orbit {
   // orbit.cpp
   void take_half();
   void read_circle(double t, double* y) const;
-  void read_own(double t, double* y) const;
+  void read_integrated(double t, double* y) const;
   static void turn_by(const Half& half, Complex way, double* y);
 
   double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
@@ -103,21 +105,22 @@ class Orbit {
   const Half& half_of(double t) const;
 
   Track track_;  // from the start past T2, in its frame
-  Half lead_;    // the motion up to T2: psi, phi and place of the start
+  Half start_;   // psi, phi and place of the start, from which the motion up to T2 is seen
+  double until_ = nowhere;
   Result result_ = Result::refused;
   int event_ = 0;
   solver::Counters counters_ = {};
-  double T1_ = 0, T2_ = 0;                           // T2: where the motion ends, if it does
-  double first_[states] = {}, second_[states] = {};  // at T1 and T2
-  double steady_rate_[states] = {};                  // at the start
-  double delta_ = 0;                                 // psi(T2) - psi(T1) less the nearest multiple of pi
-  double pair_ = 0;                                  // factor of the sum over pairs of halves
-  Complex first_turn_, mirror_turn_;                 // exp(i psi(T1)), exp(2 i psi(T2))
-  Complex displacement_;                             // from O(T1) to O(T2), seen along psi(T1)
+  double T1_ = 0, T2_ = 0;  // T2: where the motion ends, if it does
+  double at_T1_[states] = {}, at_T2_[states] = {};
+  double steady_rate_[states] = {};   // at the start
+  double delta_ = 0;                  // psi(T2) - psi(T1) less the nearest multiple of pi
+  double pair_ = 0;                   // factor of the sum over pairs of halves
+  Complex turn_at_T1_, mirror_turn_;  // exp(i psi(T1)), exp(2 i psi(T2))
+  Complex displacement_;              // from O(T1) to O(T2), seen along psi(T1)
 
   double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
 
-  mutable Half half_;  // that of the last reading, a function of its number alone
+  mutable Half latest_half_;  // that of the last reading, a function of its number alone
 };
 
 }  // namespace orbit

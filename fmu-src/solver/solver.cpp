@@ -5,6 +5,18 @@
 #include <algorithm>
 
 namespace solver {
+namespace {
+
+// (step, instant of an event in it) => latest end of the step after the event, s. An event right behind the start of
+// its step, which most often began at another event, shows that the step was too long for the motion between the two: a
+// thousandth of it is next.
+double first_stop_after(const Step& step, double t) {
+  const double length = step.end - step.start;
+  if (!(t - step.start < 1e-6 * length)) return never;
+  return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
+}
+
+}  // namespace
 
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
@@ -18,7 +30,8 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 }
 
 bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
-  first_stop_ = end_of_first_step(t);
+  const bool at_event = pending_ == Outcome::event && t == known_until_;
+  first_stop_ = at_event ? first_stop_after(step_, t) : never;
   problem_ = problem;
   method_ = method;
   known_until_ = t;
@@ -42,14 +55,6 @@ void Solver::resume() {
     ++counters_.roots;
     values_[i] = watched.value(problem_.owner, watched.event, known_until_, y);
   }
-}
-
-// Latest end of the first step after a restart at t, s. An event right behind the start of its step, which most often
-// began at another event, shows that the step was too long for the motion between the two: a thousandth of it is next.
-double Solver::end_of_first_step(double t) const {
-  const double length = step_.end - step_.start;
-  if (pending_ != Outcome::event || t != known_until_ || !(t - step_.start < 1e-6 * length)) return never;
-  return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
 }
 
 bool Solver::reaches(double t) const { return known_until_ >= t - rounding_at(t); }

@@ -75,7 +75,6 @@ class Solver {
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
-  double end_of_first_step(double t) const;
   bool make_step(double stop);
   void expand() const;
   void look_for_events(double from);

@@ -32,7 +32,7 @@ constexpr long long evaluations_per_step = 16, work_per_multibody_step = 8;
 
 bool is_known(const Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
-  return w.run.phase == Phase::unfolded && t <= w.orbit_until;
+  return w.run.phase == Phase::unfolded && t <= w.orbit.until();
 }
 
 // Whether what was set since the last step differs from what is in force.
@@ -99,16 +99,14 @@ bool enter_orbit(Wheel& w) {
     w.run.in_force = at_start;
     w.orbit_shape = result == orbit::Orbit::Result::refused ? Shape() : asked;
   }
-  if (w.orbit_shape != asked || !orbit.start_at(problem, w.setup.start)) return false;
+  if (w.orbit_shape != asked || !orbit.enter(problem, w.setup.start, largest_angle)) return false;
   w.run.counted = orbit.counters();
-  const bool ends = orbit.end_time() < solver::never;
-  w.orbit_until = ends ? orbit.end_time() : largest_angle / orbit.fastest_turn();
   return true;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
 Outcome set_in_motion(Wheel& w) {
-  const bool is_ready = w.run.phase == Phase::unfolded && w.orbit_until != no_orbit;
+  const bool is_ready = w.run.phase == Phase::unfolded && w.orbit.is_entered();
   if (w.run.phase == Phase::stepping || is_ready) return Outcome::stepped;
   if (!enter_orbit(w)) return start_solver(w);
   w.run.phase = Phase::unfolded;
@@ -189,8 +187,8 @@ Outcome step_to(Wheel& w, double t) {
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
 Outcome proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
-  if (t <= w.orbit_until) return Outcome::stepped;
-  if (w.orbit_until == w.orbit.end_time()) return Outcome::event;
+  if (t <= w.orbit.until()) return Outcome::stepped;
+  if (w.orbit.ends()) return Outcome::event;
   w.failure = "psi or phi would turn so far that the angle has too few digits";
   return Outcome::failed;
 }
@@ -209,7 +207,7 @@ void arrive(Wheel& w, double t) {
 // The event of the solution that ends the run.
 void end(Wheel& w) {
   const bool unfolded = w.run.phase == Phase::unfolded;
-  if (unfolded) move_to(w, w.orbit.end_time());
+  if (unfolded) move_to(w, w.orbit.until());
   const auto event = static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event());
   end_run(w, w.run.ended_by == Event::none ? event : w.run.ended_by);
 }

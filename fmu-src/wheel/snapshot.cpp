@@ -119,7 +119,7 @@ const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
   w.demand = demand;
   w.setup = setup;
   w.run = run;
-  w.orbit_until = no_orbit;
+  w.orbit.leave();
   if (!stepping || w.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive)) return nullptr;
   w.run.phase = Phase::broken;
   return forged;

@@ -19,8 +19,6 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-inline constexpr double no_orbit = -solver::never;
-
 struct Wheel {
   Wheel(const Reporter& to, Kind kind) : reporter(to), demand(kind) {}
 
@@ -31,8 +29,7 @@ struct Wheel {
   // The solution: steps of the solver, or the orbit of a wheel that is unfolded.
   solver::Solver solver;
   orbit::Orbit orbit;
-  Shape orbit_shape;              // of `orbit`
-  double orbit_until = no_orbit;  // s: how far `orbit` is the present run's and can be read
+  Shape orbit_shape;              // of `orbit`; it is entered where it is the present run's
   const char* failure = nullptr;  // why the last step failed; null: see the solver
   long long endings = 0;          // logged, of all runs since the last reset, those that a state led back from included
   std::optional<Reading> reading;  // of the instant reached; dropped by each call that may change the wheel
@@ -47,7 +44,7 @@ struct Wheel {
 const double* state_now(Wheel& wheel);
 
 // The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup and run,
-// demand.changed and orbit_until.
+// demand.changed and orbit.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
 // What acts at the instant reached, with what was set since the last step; y: a copy of run.y, whose slip it writes.

@@ -76,7 +76,7 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
   const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
-  const bool starts = kind != orbit::Orbit::Result::refused && probe->orbit.start_at(problem, setup.start);
+  const bool starts = kind != orbit::Orbit::Result::refused && probe->orbit.enter(problem, setup.start, solver::never);
   probe->wheel.run.in_force = at_start;
   return starts ? static_cast<int>(kind) : 0;
 }
