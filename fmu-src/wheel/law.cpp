@@ -36,6 +36,14 @@ bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
 }
 
+// A slip without friction.
+WheelSlip free_slip(const Setup& setup, WheelScene scene, const double* y) {
+  double reduced[WHEEL_MAX_STATES];
+  setup.sliding->reduce(y, reduced);
+  scene.ground = WHEEL_GROUND_PULLS;
+  return wheel_slip(&scene, reduced, 0);
+}
+
 // Whether a law of a wheel without spin agrees with the motion that it gives.
 bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
   if (scene.friction.kind == WHEEL_HELD) return held_at(setup, scene, y).reserve >= 0;
@@ -69,7 +77,10 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   now.scene.contact = WHEEL_GRIPS;
   now.layered = false;
   decide_law(setup, t, y, now);
-  if (!(grip_left(setup, now, t, y) >= 0)) begin_slide(setup, t, y, now);
+  if (grip_left(setup, now, t, y) >= 0) return;
+  const WheelScene scene = now.scene_at(t);
+  const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(setup, scene, y).N < 0;
+  if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
@@ -104,9 +115,7 @@ double first_direction(const Setup& setup, const WheelScene& scene, const double
   setup.sliding->reduce(y, reduced);
   const double chi = wheel_slip_direction(&scene, reduced);
   if (!std::isnan(chi)) return chi;
-  WheelScene pulled = scene;
-  pulled.ground = WHEEL_GROUND_PULLS;
-  const WheelSlip free = wheel_slip(&pulled, reduced, 0);
+  const WheelSlip free = free_slip(setup, scene, y);
   return wheel_angle_of(free.growth, free.turn);
 }
 

@@ -202,3 +202,17 @@ def test_an_unfolded_wheel_takes_another_limit_and_ends_where_it_requires_more(w
     assert always.step(1.0) == later.put(mu_max=0.3).step(1.0) == DISCARD
     assert never.step(1.0) == OK
     within(abs(ended(later) - ended(always)), 3e-9, "instants apart, s")
+
+
+@pytest.mark.parametrize("weights", [1.5, 500.0])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-13])
+@pytest.mark.parametrize("start", [{"guided": True}, {"s": 0.003}, {"friction_law": 2, "s": 0.003}], ids=str)
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_a_jump_of_the_force_that_lifts_a_wheel_is_no_loss_of_grip(wheel, formulation, start, tolerance, weights):
+    road = {"mu_max": 0.5, "mu_slide": 0.5, "formulation": formulation}
+    w = wheel(logging=True).start(tolerance=tolerance, **road, **start).to(0.2)
+    w.take_messages()
+    assert w.put(F_Z=weights * 196.2).step(0.1) == DISCARD
+    hint, ending = w.texts()
+    assert hint == HINT and ending.startswith("The wheel lifted off the ground at t = 0.2 s")
+    assert w.get("contact_mode") == [0]
