@@ -17,7 +17,7 @@ from support.bounds import EPSILON, beyond, within
 from wheelfmu.fmu.description.measuring import measured
 from wheelfmu.fmu.description.numbering import numbered, with_event_indicators
 from wheelfmu.fmu.driver import FMU2Wheel
-from wheelfmu.fmu.paths import ROOT, copy_checkout
+from wheelfmu.fmu.paths import CMAKE, ROOT, copy_checkout
 from wheelfmu.truth import exchange as exchanging
 from wheelfmu.truth.motion import Library, Run
 
@@ -118,7 +118,7 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     sundials = os.environ.get("WHEEL_SUNDIALS_SOURCE") or next((ROOT / "build" / "sundials").glob("*/vendor"))
     options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_UNITY_BUILD": "ON", "Python3_EXECUTABLE": sys.executable}
     options |= {"WHEEL_SUNDIALS_SOURCE": sundials}
-    configure = ["cmake", "-S", root, "-B", root / "build", *(f"-D{name}={value}" for name, value in options.items())]
+    configure = [*CMAKE, "-S", root, "-B", root / "build", *(f"-D{name}={value}" for name, value in options.items())]
     make, fmu = ["cmake", "--build", root / "build", "--target", "fmu", "-j2"], root / "build" / "wheel.fmu"
     for command in (configure, make):
         subprocess.run(command, check=True, capture_output=True)

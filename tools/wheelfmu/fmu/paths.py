@@ -2,16 +2,27 @@
 
 import fcntl
 import os
+import shutil
 import subprocess
 from ctypes import CDLL
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
+CMAKE = ("cmake", "-G", "Unix Makefiles")  # whatever the variable CMAKE_GENERATOR is
 
 
 def build_folder() -> Path:
     """The build under test: WHEEL_BUILD, or that of the preset release."""
     return Path(os.environ.get("WHEEL_BUILD", ROOT / "build" / "release"))
+
+
+def without_stale_cache(folder: Path, source: Path, *lines: str) -> None:
+    """A build folder; empty where CMake's cache, which holds absolute paths, has another checkout, generator or line."""
+    cache = folder / "CMakeCache.txt"
+    wanted = (f"CMAKE_HOME_DIRECTORY:INTERNAL={source}\n", f"CMAKE_GENERATOR:INTERNAL={CMAKE[-1]}\n", *lines)
+    if cache.exists() and not all(line in cache.read_text(encoding="utf-8", errors="replace") for line in wanted):
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def probe(folder: str) -> CDLL:

@@ -7,13 +7,12 @@ page) or wheel_driver (the release's scenes). It prints the file, which is made 
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from importlib.resources import files
 from pathlib import Path
 
-from wheelfmu.publishing.markdown import ROOT
+from wheelfmu.fmu.paths import CMAKE, ROOT, without_stale_cache
 
 WASM = "wasm32-wasi"
 
@@ -27,11 +26,8 @@ def build(
     out: Path, platform: str, target: str, sources: Path = ROOT, zig: Path | None = None, sundials: str = ""
 ) -> None:
     """One CMake target for one platform of zig's; sundials: its source tree, fetched if it is not given."""
-    cache, program = out / "CMakeCache.txt", (zig or compiler()) / "zig"
-    # CMake's cache holds absolute paths: where the checkout or the compiler has another one, the folder is built anew.
-    paths = (f"CMAKE_HOME_DIRECTORY:INTERNAL={sources}\n", f"={program}\n")
-    if cache.exists() and not all(path in cache.read_text(encoding="utf-8") for path in paths):
-        shutil.rmtree(out)
+    program = (zig or compiler()) / "zig"
+    without_stale_cache(out, sources, f"={program}\n")
     options = {
         "CMAKE_BUILD_TYPE": "Release",
         "CMAKE_UNITY_BUILD": platform == WASM,
@@ -44,11 +40,10 @@ def build(
         "WHEEL_SUNDIALS_SOURCE": sundials or os.environ.get("WHEEL_SUNDIALS_SOURCE", ""),
     }
     given = [f"-D{name}={value}" for name, value in options.items()]
-    out.mkdir(parents=True, exist_ok=True)
     log = out / "build.log"
     with log.open("w", encoding="utf-8") as file:
         for command in (
-            ["cmake", "-Wno-dev", "-S", sources, "-B", out, *given],
+            [*CMAKE, "-Wno-dev", "-S", sources, "-B", out, *given],
             ["cmake", "--build", out, "--target", target, "--parallel", str(os.cpu_count())],
         ):
             if subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode:

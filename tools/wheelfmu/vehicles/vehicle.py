@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from pythonfmu.builder import FmuBuilder
 
-from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.fmu.paths import CMAKE, ROOT, build_folder, without_stale_cache
 
 from . import ssp
 from .master import Component, Connection, Ended, Master, Signal, loaded
@@ -30,9 +30,8 @@ Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and
 
 def build_c(folder: Path) -> Fmus:
     """The FMUs in C++, by name, by CMake (../CMakeLists.txt)."""
-    cache = folder / "CMakeCache.txt"  # it holds absolute paths: of a folder that was moved it is made anew
-    moved = cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={EXAMPLES}\n" not in cache.read_text()
-    configure = ["cmake", *["--fresh"] * moved, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
+    without_stale_cache(folder, EXAMPLES)
+    configure = [*CMAKE, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
     for command in (configure, ["cmake", "--build", folder]):
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return {fmu.stem: fmu for fmu in folder.glob("*.fmu")}
@@ -40,11 +39,11 @@ def build_c(folder: Path) -> Fmus:
 
 def build_all(folder: Path = ROOT / "build" / "examples") -> Fmus:
     """Every FMU of the examples by name; balance.fmu, by pythonfmu, needs a host with a Python interpreter."""
-    folder.mkdir(parents=True, exist_ok=True)
-    script = EXAMPLES / "balance" / "balance.py"
+    fmus = build_c(folder)
+    script, balance = EXAMPLES / "balance" / "balance.py", folder / "balance.fmu"
     how = {"project_files": [script.with_suffix(".csv")], "needsExecutionTool": "false"}
-    FmuBuilder.build_FMU(script, dest=folder / "balance.fmu", **how)
-    return {**build_c(folder), "wheel": build_folder() / "wheel.fmu"}
+    FmuBuilder.build_FMU(script, dest=balance, **how)
+    return {**fmus, "balance": balance, "wheel": build_folder() / "wheel.fmu"}
 
 
 def orders(errors: dict[float, float]) -> np.ndarray:
