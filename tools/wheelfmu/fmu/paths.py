@@ -17,7 +17,7 @@ def build_folder() -> Path:
 
 
 def without_stale_cache(folder: Path, source: Path, *lines: str) -> None:
-    """A build folder; empty where CMake's cache, which holds absolute paths, has another checkout, generator or line."""
+    """A build folder; empty where the cache, which holds absolute paths, has another checkout, generator or line."""
     cache = folder / "CMakeCache.txt"
     wanted = (f"CMAKE_HOME_DIRECTORY:INTERNAL={source}\n", f"CMAKE_GENERATOR:INTERNAL={CMAKE[-1]}\n", *lines)
     if cache.exists() and not all(line in cache.read_text(encoding="utf-8", errors="replace") for line in wanted):
