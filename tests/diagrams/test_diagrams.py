@@ -207,7 +207,7 @@ def test_of_two_scenes_that_look_alike_one_is_drawn_and_its_caption_says_so() ->
     both = [scene(**fall), scene(0.03, **fall | {"theta": fall["theta"] + 1e-3 * np.sin(TIME)})]
     wanted = PICTURES(both, Path("results"))
     assert {tuple(one.name for one in scenes) for _, scenes, *_ in wanted} == {("friction",)}
-    assert "Without it the diagrams look alike." in caption(wanted[0][1][0])
+    assert "Without rolling friction the diagrams look alike." in caption(wanted[0][1][0])
     apart = [both[0], scene(0.03, **fall | {"theta": 1.3 * np.cos(TIME / 8)})]
     assert PICTURES(apart, Path("results"))[0][1] == apart
 

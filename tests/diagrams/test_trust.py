@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from fmpy import simulate_fmu
 from support.bounds import beyond, relative_error, within
 
-from wheelfmu.diagrams import races
+from wheelfmu.diagrams import races, style
 from wheelfmu.fmu.paths import build_folder
 from wheelfmu.fmu.trust import DEFAULT, HEADLINE, ROUNDING, TIGHTEST, Motion, Wheel, differences, trust
 from wheelfmu.truth import sliding
@@ -127,9 +128,27 @@ def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path
     times, given = np.linspace(0, 2, 201), {"s": "0.03"}
     truth = wheel.motion(given, times, TIGHTEST)
     found = races.measured(wheel, given, times, truth, np.ones(4))
+    pictures, save = [], style.save_png
+    monkeypatch.setattr(style, "save_png", lambda figure, path: pictures.append(figure) or save(figure, path))
     races.write({"Rolling friction": found}, tmp_path)
     header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
     assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
     errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}
     assert all(errors[method, "1e-08"] < 0.1 * errors[method, "0.0001"] for method in races.METHODS)
     assert (tmp_path / "error_time.png").read_bytes().startswith(b"\x89PNG")
+    (ax,) = pictures[0].axes
+    marks = [text.get_text() for text in ax.texts]
+    assert {*marks} == {"$10^{-4}$", "$10^{-8}$"} and len(marks) >= 2 * len(races.METHODS) - 2  # two may coincide
+    legend = [text.get_text() for text in pictures[0].legends[0].get_texts()]
+    assert sorted(legend) == sorted([*races.METHODS, "default tolerance, $10^{-8}$"])
+    rings = [line for line in ax.lines if line.get_label().startswith("default")]
+    assert len(rings) == len(races.METHODS)
+    pictures[0].canvas.draw()
+    texts = [text.get_window_extent() for text in ax.get_xticklabels(which="both") if text.get_text()]
+    assert all(left.x1 < right.x0 for left, right in pairwise(sorted(texts, key=lambda box: box.x0)))
+
+
+def test_formulation_3_is_compared_once_also_where_it_is_the_one_that_is_asked_for() -> None:
+    assert "formulation 3" in races.methods_of({"s": "0.03"}) and "formulation 3" not in races.methods_of(
+        {"formulation": "3"}
+    )

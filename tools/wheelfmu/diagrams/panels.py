@@ -187,8 +187,9 @@ def draw_forces(ax: Axes, scene: Scene) -> list[str]:
             if any((side * force).max() > 0.3 * limit.min() for text, (force, _) in shown.items() if text != "$N$"):
                 ax.plot(scene["time"], side * limit, color=style.GREY, linewidth=0.8, linestyle=(0, (4, 2)))
         marks.append(r"dashed: $\mu N$, with $\mu_\mathrm{max}$ while it rolls, $\mu_\mathrm{slide}$ while it slides")
-    words = rf"{LETTER['lambda_x']} along $e_1$, {LETTER['lambda_y']} to the left"
-    return [*marks, *_curves(ax, scene, shown), words]
+    sides = {LETTER["lambda_x"]: "along $e_1$", LETTER["lambda_y"]: "to the left"}
+    words = ", ".join(f"{letter} {side}" for letter, side in sides.items() if letter in shown)
+    return [*marks, *_curves(ax, scene, shown), *[words] * bool(words)]
 
 
 def draw_carrier(ax: Axes, scene: Scene) -> list[str]:
@@ -211,7 +212,7 @@ def draw_distance(ax: Axes, scene: Scene) -> list[str]:
         rises = reached >= distance[len(time) // 2]
         look = {"ha": "right", "va": "bottom" if rises else "top"}
         style.note(ax, f"{reached:.4g} m".replace("-", MINUS), (at, reached), (-2, 3 if rises else -3), **look)
-    ax.margins(y=0.14)
+    ax.margins(y=0.22)
     return marks
 
 

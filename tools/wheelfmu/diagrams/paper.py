@@ -360,7 +360,7 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
     if not paper and len(scenes) == 2 and alike(*scenes):
-        scenes = [replace(scenes[1], alone="without it the diagrams look alike")]
+        scenes = [replace(scenes[1], alone="without rolling friction the diagrams look alike")]
     every = PAPERS if paper else panels_of(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": every}
     wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]

@@ -14,10 +14,14 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.text import Annotation
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
 from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
+from wheelfmu.fmu.trust import DEFAULT, REPEATS, TIGHTEST, Motion, Wheel, trust
 
+BESIDE = 0.06  # decades: marks that are closer are one
 LEAST = 1e-14  # of the range: what is drawn for less
 LOOKS = {  # colour, marker and line
     "automatic": (style.BLUE, "o-"),
@@ -45,14 +49,40 @@ def dress(ax: Axes, title: str, time: str = "best time") -> None:
     ax.set(xlabel=f"{time} [µs]", ylabel="error / range", xscale="log", yscale="log", ylim=(LEAST, 3))
     ax.set_title(title, fontsize=9, loc="left")
     ax.grid(alpha=0.3, linewidth=0.4)
+    first, last = ax.dataLim.intervalx
+    if last < 30 * first:  # few decades, or none: 1, 2 and 5 of each have room
+        ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
-def measured(wheel, start: dict[str, str], times: np.ndarray, truth, scales: np.ndarray) -> list[dict]:  # noqa: ANN001
+def mark(ax: Axes, rows: Sequence[dict]) -> None:
+    """Of one method: the tolerances at the ends of its curve, and a ring about the default one."""
+    at = {row["tolerance"]: (row["median_us"], max(row["error"], LEAST)) for row in rows}
+    for tolerance, shift, side in ((max(at), (0, 4), "bottom"), (min(at), (0, -4), "top")):
+        there = [text.xy for text in ax.texts if isinstance(text, Annotation) and text.get_verticalalignment() == side]
+        if all(abs(np.log10(np.divide(at[tolerance], other))).max() > BESIDE for other in there):
+            look = {"ha": "center", "va": side, "fontsize": 6.5, "color": style.GREY}
+            style.note(ax, power(tolerance), at[tolerance], shift, **look)
+    if DEFAULT in at:
+        look = {"markersize": 8, "fillstyle": "none", "markeredgewidth": 0.8, "color": style.INK, "linestyle": "none"}
+        ax.plot(*at[DEFAULT], "o", label=f"default tolerance, {power(DEFAULT)}", **look)
+
+
+def power(tolerance: float) -> str:
+    return rf"$10^{{{np.log10(tolerance):.0f}}}$"
+
+
+def methods_of(start: dict[str, str]) -> dict[str, dict[str, str]]:
+    """The ways to be compared: formulation 3 once, also where the others have it."""
+    left_out = ["formulation 3"] * (start.get("formulation") == "3")
+    return {name: more for name, more in METHODS.items() if name not in left_out}
+
+
+def measured(wheel: Wheel, start: dict[str, str], times: np.ndarray, truth: Motion, scales: np.ndarray) -> list[dict]:
     """A row per method and tolerance, with its error or why it has none; times are medians of repetitions in turns."""
-    from wheelfmu.fmu.trust import trust
-
     rows: list[dict] = []
-    for method, more in METHODS.items():
+    for method, more in methods_of(start).items():
         for tolerance in TOLERANCES:
             found = wheel.motion(start | more, times, tolerance)
             failed = abs(len(found.rows) - len(truth.rows)) > 1
@@ -74,11 +104,15 @@ def write(races: dict[str, list[dict]], folder: Path) -> None:
     figure = style.figure_mm(style.PAGE, 80.0)
     figure.set_layout_engine("constrained")
     for ax, (label, rows) in zip(np.ravel(figure.subplots(1, len(races))), races.items(), strict=True):
-        for method in METHODS:
+        for method in dict.fromkeys(row["method"] for row in rows):
             done = [row for row in rows if row["method"] == method and not row["note"]]
             curve(ax, method, [row["median_us"] for row in done], [row["error"] for row in done])
-        dress(ax, label, "median time at tolerances 1e-4 to 1e-12")
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
+            if done:
+                mark(ax, done)
+        dress(ax, label, "median time; at the ends: the tolerance")
+    handles = {text: handle for ax in figure.axes for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
+    order = sorted(handles, key=lambda text: text.startswith("default"))
+    figure.legend([handles[text] for text in order], order, loc="outside lower center", ncols=6)
     style.save_png(figure, folder / "error_time.png")
     with (folder / "error_time.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -96,8 +130,6 @@ def main(folder: Path, given: dict[str, str]) -> None:
     asked = given.pop("error", CHECKS["estimate"])
     if asked == CHECKS["no"]:
         return
-    from wheelfmu.fmu.trust import DEFAULT, REPEATS, TIGHTEST, Wheel, trust
-
     stop, interval = (float(given.pop(name, v.start)) for name, v in RUN.items())
     times, races = np.append(np.arange(0, stop * (1 - 1e-9), interval), stop), {}
     r_0, r, g = (float(given.get(name, variables("parameter")[name].start)) for name in ("r_0", "r", "g"))
