@@ -131,15 +131,18 @@ bool decide(Wheel& w) {
   const double spin = omega_z;
   const bool led = is_led(setup, run);
   if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&run.in_force.scene.wheel, run.y);
-  if (const Event ending = ending_at(setup, run); ending != Event::none) {
-    end_run(w, ending);
-    return false;
-  }
+  const auto ends_here = [&] {
+    const Event ending = ending_at(setup, run);
+    if (ending != Event::none) end_run(w, ending);
+    return ending != Event::none;
+  };
+  if (ends_here()) return false;
   for (const EventRow& row : event_rows)
     if (row.event != Event::spin_changes && !ends_run(row, setup) && has_occurred(row, setup, run))
       pass_event(w, row.event);
   decide_friction(setup, run, led);
   log_changes(w, before);
+  if (ends_here()) return false;  // under the law that was decided
   const WheelScene& scene = run.in_force.scene;
   return omega_z != spin || differ(law, scene.friction) || scene.ground != before.scene.ground;
 }

@@ -187,6 +187,22 @@ def test_a_held_wheel_stays_at_exactly_zero(library: Library) -> None:
         assert wheel.x()[-1] == 0
 
 
+@pytest.mark.parametrize("mode", ["event", "continuous"])
+@pytest.mark.parametrize(("torque", "ends"), [(20.0, False), (200.0, True)])
+@pytest.mark.parametrize("s", [0.0, 0.003])
+def test_a_brake_beyond_the_grip_ends_the_model_in_the_event_mode_that_decides_it(library, s, torque, ends, mode):
+    """Upright: of a torque M the road takes m R M / (J_z + m R^2) in place of mu_max m g; the limit lies between."""
+    with exchange(library, logging=True, s=s, mu_max=0.5, **{**AT_REST, "phi_dot_start": -20.0}) as wheel:
+        wheel.place(0.1, wheel.x())
+        if mode == "continuous":
+            assert wheel.set(M_brake=torque) == OK
+            assert wheel.wants_event() == (ends or s == 0)
+        assert wheel.enterEventMode() == OK
+        assert wheel.set(M_brake=torque) == OK
+        assert bool(wheel.decide().terminateSimulation) == ends
+        assert ("needs a friction coefficient above mu_max = 0.5 at t = 0.1 s" in "".join(wheel.sentences)) == ends
+
+
 @pytest.mark.parametrize("theta", [0.0, -0.1, np.pi, 3.3])
 def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: Library, theta: float) -> None:
     with exchange(library, s=0.03) as wheel:
