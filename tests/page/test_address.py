@@ -69,8 +69,8 @@ def test_steps_of_the_story_and_scenes_are_places_to_which_the_browser_goes_back
 
 WRONG = {
     "no number": ("s=abc", "s = abc is no number"),
-    "beyond the limits": ("s=5", "s = 5 is not between 0 and 1"),
-    "beyond the limits, in degrees": ("theta=200deg", "theta_start = 200° is not between 1° and 179°"),
+    "beyond the limits": ("s=-1", "s = -1 is not between 0 and 100"),
+    "beyond the limits, in degrees": ("theta=200deg", "theta_start = 200° is not between 0° and 180°"),
     "an unknown name": ("speed=3", "speed, which the wheel has not"),
     "what may not be set": ("formulation=3", "formulation, which cannot be set"),
     "a name of the language": ("__proto__=3", "__proto__, which the wheel has not"),

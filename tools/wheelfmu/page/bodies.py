@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
 SLIDING = ("slip_x", "slip_y")
+GUIDED = ("M_guide_1", "M_guide_2")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 PARAMETERS = tuple(variables("parameter"))
 BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
@@ -87,7 +88,7 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
         rolls = group.keys() >= set(POSE)
         if not rolls:
             group = {ALIASES.get(short, short): column for short, column in group.items()}
-        wanted = (*POSE, *SHOWN, *SLIDING, *RATES, *PARAMETERS) if rolls else BODY_POSE
+        wanted = (*POSE, *SHOWN, *SLIDING, *GUIDED, *RATES, *PARAMETERS) if rolls else BODY_POSE
         if rolls or group.keys() >= {"X", "Y", "Z"}:
             columns = {short: numbers(table, group[short])[kept] for short in wanted if short in group}
             body = Body(prefix or path.stem, {"time": time[kept]} | columns)

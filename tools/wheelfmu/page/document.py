@@ -12,7 +12,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
 
-from wheelfmu.diagrams.start_values import ROOT, wheels
+from wheelfmu.diagrams.start_values import PAPER_S, ROOT, preset, scale, thrown, wheels
 from wheelfmu.diagrams.start_values import bodies as ready_bodies
 from wheelfmu.diagrams.start_values import variables as described
 from wheelfmu.fmu.outputs import fresh
@@ -67,10 +67,27 @@ def encoded(body: Body) -> dict:
     return {"name": body.name, "label": body.label, "columns": columns} | kind
 
 
+def colours() -> dict[str, dict[str, str]]:
+    """{quantity or state: {light, dark}}, those of all pictures."""
+    found = json.loads((ROOT / "tools" / "wheelfmu" / "diagrams" / "colours.json").read_text(encoding="utf-8"))
+    return {name: found["palette"][tone] for name, tone in found["quantities"].items()}
+
+
+def moving_wheels() -> dict[str, dict]:
+    """The presets, each with its start: that of its case, or the paper's motion in proportion to its size."""
+    found = {}
+    for name, wheel in wheels().items():
+        body = preset(name)
+        scaled = {"phi_dot_start": body["phi_dot_start"], "s": PAPER_S * scale(body, m=1)}
+        start = {n: float(f"{value:.3g}") for n, value in scaled.items()} | {"X_O_start": body["X_O_start"]}
+        found[name] = wheel | {"start": thrown(name) or start, "thrown": bool(thrown(name))}
+    return found
+
+
 def wheel_itself(wasm: Path) -> dict:
     """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
     (guid,) = re.findall(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid, "wheels": wheels(), "bodies": ready_bodies()}
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid, "wheels": moving_wheels(), "bodies": ready_bodies()}
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:
@@ -80,7 +97,8 @@ def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: 
     data = {"bodies": [encoded(body) for body in bodies], "sources": sources, "variables": variables}
     data |= {"live": wheel_itself(wasm) if wasm else None}
     parts = {"licences": notice, "data": json.dumps(data).replace("<", "\\u003c"), "modules": modules(three)}
-    page = Environment(loader=FileSystemLoader(WEB)).get_template("page.html").render(title=title, **parts)
+    template = Environment(loader=FileSystemLoader(WEB)).get_template("page.html")
+    page = template.render(title=title, colours=colours(), **parts)
     with fresh(output) as new:
         new.write_text(page, encoding="utf-8")
     return len(page.encode())

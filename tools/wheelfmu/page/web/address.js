@@ -6,7 +6,7 @@
 // there is as at first.
 import {PORTRAITS} from '#diagrams';
 import {variables} from '#dom';
-import {degrees, limitsOf} from '#knobs';
+import {degrees, limitsOf, shownLimits} from '#knobs';
 import {bodies, MOMENTS, momentsOf} from '#mechanics';
 
 const LONGEST = 4000;  // characters
@@ -37,12 +37,13 @@ function textOf(name, value) {
 }
 
 /** The number in SI that a reader types into the field of a quantity of knobs.js; throws one sentence. */
-export function typed(text, {name, unit, limits}) {
+export function typed(text, knob) {
+  const {unit} = knob;
   const plain = text.trim().replace('−', '-').replace(/\s*(°|deg)$/, '');
   if (/^[-+]?\d+,\d+$/.test(plain))
     refuse(`${plain} is no number: decimals follow a point, ${plain.replace(',', '.')}.`);
   if (!NUMBER.test(plain)) refuse(`${text.trim().slice(0, 20) || 'Nothing'} is no number.`);
-  const [low, high] = limits;
+  const [low, high] = shownLimits(knob);
   if (Number(plain) < low || Number(plain) > high) {
     const [value, from, to] = [plain, low, high].map((part) => `${part}${unit === '°' ? unit : ''}`);
     refuse(`${value} is not between ${from} and ${to}${unit && unit !== '°' ? ` ${unit}` : ''}.`);

@@ -22,7 +22,7 @@ const ABOUT_E1 = {
   side: 0.7,
   gyro: 0.9,
   sum: 1.12
-};                  // radii of their arrows, in those of the wheel
+};  // radii of their arrows, in those of the wheel
 const COIN = 0.05;  // m, up to which a disc is a coin
 const BEND = 4;     // rad, of a moment m g r_0
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;

@@ -17,8 +17,7 @@ const SIGNALS = [
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
 const POINTS = 40;
-const FINEST = 12;          // parts of STEP, at most
-const PAPER_RADIUS = 0.35;  // m, r_0 + r
+const FINEST = 12;  // parts of STEP, at most
 const NAMES = ['This wheel', 'Kept'];
 
 /** The part of STEP, s, that gives nutation and turn POINTS rows a period; a guided wheel has neither. */
@@ -149,21 +148,15 @@ export class LiveWheel {
     this.change('fitted');
   }
 
-  /**
-   * Another wheel: its spin and friction follow those of the paper's in proportion to its size, or a case's `start`.
-   */
-  setWheel({parameters, start}) {
-    const size = (parameters.r_0 + parameters.r) / PAPER_RADIUS;
-    const [spin, s] = [-2 / Math.sqrt(size), 0.03 * size].map((value) => Number(value.toPrecision(3)));
+  /** A preset wheel with its start: the paper's motion in proportion to its size, or how a case is thrown. */
+  setWheel({parameters, start, thrown}) {
     const friction = this.value('s') > 0;
-    const X_O_start = -parameters.r_0 * Math.cos(5 * Math.PI / 12);  // the paper's start: the contact at the origin
-    const own = Object.entries(start ?? {X_O_start, phi_dot_start: spin, ...(friction && {s})})
-                    .filter(([name]) => limitsOf(name));
+    const own = Object.entries(start).filter(([name]) => limitsOf(name) && (name !== 's' || thrown || friction));
     Object.assign(this.plan.values, parameters, Object.fromEntries(own));
     this.plan.body = null;
     this.change('fitted');
-    const set = `φ̇ is ${spin} rad/s now${friction ? `, and s is ${s} m` : ''}.`.replace('-', '−');
-    this.scaled = start ? null : `As fast for its size as the paper's wheel: ${set}`;
+    const set = `φ̇ is ${start.phi_dot_start} rad/s now${friction ? `, and s is ${start.s} m` : ''}.`.replace('-', '−');
+    this.scaled = thrown ? null : `As fast for its size as the paper's wheel: ${set}`;
     this.page.player.seek(0);
   }
 

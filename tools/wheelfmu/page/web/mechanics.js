@@ -54,8 +54,10 @@ export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
 }
 
 /** The rate at which a fast upright wheel nutates over its spin omega_z. */
-export const nutation = ({m, r_0, r, J_x, J_z}) =>
-    Math.sqrt(J_z * (J_z + m * (r_0 + r) ** 2) / (J_x * (J_x + m * (r_0 + r) ** 2)));
+export function nutation({m, r_0, r, J_x, J_y, J_z}) {
+  const [J, R2] = [Math.min(J_x, J_y), (r_0 + r) ** 2];
+  return Math.sqrt(J_z * (J_z + m * R2) / (J * (J + m * R2)));
+}
 
 /**
  * The moments about e1 through the centre of a wheel with J_x = J_y that nothing but weight and ground acts on, N m:

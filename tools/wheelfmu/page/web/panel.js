@@ -3,7 +3,7 @@
 import {typed} from '#address';
 import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
 import {setUpFates} from '#fates';
-import {GRIP, HELD, NOW, START, torqueOf, WHEEL} from '#knobs';
+import {GRIP, HELD, NOW, shownLimits, START, torqueOf, WHEEL} from '#knobs';
 import {balance, bodies, criticalSpin, doubtOf} from '#mechanics';
 import {scenes} from '#scenes';
 import {slipOf, tipsByRounding} from '#table';
@@ -98,7 +98,8 @@ function setUpScenes(live) {
  * is dragged, present(name) for what they show.
  */
 function makeKnob(host, knob, {take, present, hold = () => {}}) {
-  const {name, symbol, unit, what, limits: [low, high], range} = knob;
+  const {name, symbol, unit, what, range} = knob;
+  const [low, high] = shownLimits(knob);
   const scale = unit === '°' ? 180 / Math.PI : 1;
   const about = what.replace('_', '');
   const slider = make('input', {type: 'range', name, id: `slider_${name}`});
@@ -200,7 +201,7 @@ function setUpReady(live, wheels) {
     if (kind === 'body') live.setBody(name);
     if (kind !== 'wheel') return;
     const [, before] = Object.entries(wheels).find(same) ?? [];
-    Object.keys(before?.start ?? {})
+    Object.keys(before?.thrown ? before.start : {})
         .forEach((other) => delete live.plan.values[other]);  // the throw goes with its wheel
     live.setWheel(wheels[name]);
   });
