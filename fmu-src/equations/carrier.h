@@ -94,6 +94,11 @@ static inline Moment moment_of(const WheelScene* scene, const Inertia* I, const 
   return M;
 }
 
+/* omega_2_dot, of omega_2 = psi_dot sin(theta). */
+static inline double guided_rate(const Carrier* c, double psi_ddot) {
+  return psi_ddot * c->sin_theta + c->Omega_3 * c->omega_1;
+}
+
 /* A horizontal vector, along e1 and to the left of it, in fixed axes. */
 static inline void to_fixed(const Carrier* c, double along, double left, double* X, double* Y) {
   *X = along * c->cos_psi - left * c->sin_psi;

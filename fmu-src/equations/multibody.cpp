@@ -149,13 +149,15 @@ Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
   return K;
 }
 
-// A hub carrier keeps psi and theta: these two constraints stand in the place of the moments across the axle, where
+// A hub carrier turns psi and theta: these two constraints stand in the place of the moments across the axle, where
 // alone their multipliers act.
-void guide(Matrix9& K, Vector9& column) {
+void guide(const WheelLoad& load, Matrix9& K, Vector9& column) {
+  const Vector2 turn(load.turn);
+  column -= K.middleCols<2>(3) * turn;
+  column.segment<2>(3) = turn;
   K.middleRows<2>(3).setZero();
   K.middleCols<2>(3).setZero();
   K.block<2, 2>(3, 3).setIdentity();
-  column.segment<2>(3).setZero();
 }
 
 // Solution of (24) and the moment of ground and brake about the axle. The determinant of a wheel that slides, if held
@@ -172,7 +174,7 @@ Solution solve(const Instant& now, bool pulls) {
   Vector9 column = now.column;
   if (now.scene.friction.kind == WHEEL_HELD) {  // tau is found from omega_z_dot = 0, linearly
     Matrix9 matrix = system_matrix(now, 0, mu);
-    if (now.scene.guided) guide(matrix, column);
+    if (now.scene.guided) guide(now.scene.load, matrix, column);
     const Eigen::PartialPivLU<Matrix9> K(matrix);
     const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
     const double compliance = s.Q.row(2).dot(unit.segment<3>(3)), tau = -omega_z_dot(s, free) / compliance;
@@ -182,7 +184,7 @@ Solution solve(const Instant& now, bool pulls) {
   const double kappa = wheel_kappa(&now.scene.friction, omega_z(s)), brake = now.scene.load.brake;
   column[about_axle] -= brake * kappa;
   Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, mu);
-  if (now.scene.guided) guide(matrix, column);
+  if (now.scene.guided) guide(now.scene.load, matrix, column);
   const Eigen::PartialPivLU<Matrix9> K(matrix);
   const Vector9 unknowns = K.solve(column);
   const double tau = kappa == 0 ? 0 : -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa;

@@ -67,11 +67,16 @@ double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment
   return rate->tau * part + now->tau * part_rate;
 }
 
-/* Euler's first two equations where omega_1 = omega_2 = 0: no moment about O is left across the axle. */
-void wheel_guide_moment(const WheelParameters* wheel, const WheelKinematics* k, const double lambda[3],
-                        const double M[3], double out[2]) {
-  double force[2], cos_theta = cos(k->theta);
-  wheel_horizontal_force(k, lambda, force);
-  out[0] = wheel->r_0 * cos_theta * lambda[2] - wheel_height(wheel, k->theta) * force[1] - M[0];
-  out[1] = wheel->r * cos_theta * force[0] - M[1];
+/* Euler's first two equations, dH/dt = M + c x lambda + M_guide. */
+void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* k, const WheelDynamics* d, double out[2]) {
+  const WheelParameters* w = &scene->wheel;
+  const double y[] = {k->theta, k->theta_dot, k->psi_dot * sin(k->theta), k->omega_z, k->psi, k->phi};
+  Carrier c = carrier_of(w, y);
+  Inertia I = inertia_of(w, k->phi);
+  Moment M = moment_of(scene, &I, &c);
+  double omega_2_dot = guided_rate(&c, d->psi_ddot), force[2];
+  wheel_horizontal_force(k, d->lambda, force);
+  out[0] = I.I_11 * d->theta_ddot + I.p * omega_2_dot - M.M_1 + w->r_0 * c.cos_theta * d->lambda[2] -
+           wheel_height(w, k->theta) * force[1];
+  out[1] = I.p * d->theta_ddot + I.I_22 * omega_2_dot - M.M_2 + c.eta * force[0];
 }

@@ -50,18 +50,6 @@ static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Ca
   };
 }
 
-/* On its hub carrier: spin is all that is left to move. */
-static inline System guided_system_of(const WheelParameters* w, const Carrier* c, const Drift* d) {
-  double a_33 = w->J_z + w->m * (c->rho * c->rho);
-  return (System){
-      .a_33 = a_33,
-      .b_22 = 1.0,
-      .h_3 = d->M.M_3 + c->rho * d->k_1,
-      .inverse_determinant = 1.0 / a_33,
-      .N = d->k_2 * c->sin_theta + d->k_3 * c->cos_theta,
-  };
-}
-
 static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
   double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
@@ -118,11 +106,29 @@ static inline Accelerations move(const System* s, AxleLaw law) {
   return solve(s, &law);
 }
 
+/* On its hub carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
+static inline Accelerations move_guided(const WheelScene* scene, const Carrier* c, const Drift* d, AxleLaw law) {
+  const WheelParameters* w = &scene->wheel;
+  double omega_1_dot = scene->load.turn[1], omega_2_dot = guided_rate(c, scene->load.turn[0]);
+  double rise = w->r_0 * (c->cos_theta * omega_1_dot - c->sin_theta * (c->omega_1 * c->omega_1)); /* m/s2 */
+  double N = w->m * (w->g + rise) - scene->load.F[2];
+  double h_3 = d->M.M_3 + c->rho * (d->k_1 + w->m * (c->eta * omega_2_dot));
+  if (!(N > 0 || law.branch_kept)) law.lever = 0;
+  double tau = law.held ? -h_3 : -(law.lever * N + law.brake);
+  return (Accelerations){
+      .omega_1_dot = omega_1_dot,
+      .omega_2_dot = omega_2_dot,
+      .omega_3_dot = law.held ? 0.0 : (h_3 + tau) / (w->J_z + w->m * (c->rho * c->rho)),
+      .N = N,
+      .tau = tau,
+  };
+}
+
 /* One state under a load, ready for a law of friction. Inlined as the carrier is. */
 typedef struct Instant {
   Carrier carrier;
   Drift drift;
-  System system;
+  System system; /* unless guided */
 } Instant;
 
 INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
@@ -130,9 +136,12 @@ INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided)
   Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
   Instant now = {.carrier = carrier_of(w, y)};
   now.drift = drift_of(scene, &inertia, &now.carrier);
-  now.system =
-      guided ? guided_system_of(w, &now.carrier, &now.drift) : system_of(w, &inertia, &now.carrier, &now.drift);
+  if (!guided) now.system = system_of(w, &inertia, &now.carrier, &now.drift);
   return now;
+}
+
+INLINED Accelerations accelerations_of(const WheelScene* scene, const Instant* now, AxleLaw law, int guided) {
+  return guided ? move_guided(scene, &now->carrier, &now->drift, law) : move(&now->system, law);
 }
 
 /* The horizontal reaction, of R = m a - F turned into fixed axes: lambda_1, lambda_2. */
@@ -175,7 +184,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
-  Accelerations a = move(&now.system, law);
+  Accelerations a = accelerations_of(scene, &now, law, guided);
   double X_dot, Y_dot;
   set_velocity(&scene->wheel, &now.carrier, &X_dot, &Y_dot);
   set_rates(&now.carrier, &a, y_dot);
@@ -210,7 +219,7 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Instant now = instant_of(scene, y, scene->guided);
-  Accelerations a = move(&now.system, law_of(scene, y[WHEEL_OMEGA_3]));
+  Accelerations a = accelerations_of(scene, &now, law_of(scene, y[WHEEL_OMEGA_3]), scene->guided);
   reaction_of(&scene->wheel, &now, &a, out->lambda);
   set_dynamics(scene, &now.carrier, &a, out);
 }

@@ -10,6 +10,7 @@ typedef struct Action {
   Moment M;        /* N m, external less gyroscopic moment */
   double N_rest;   /* N, normal force for omega_1_dot = 0 */
   double a_x, a_y; /* m/s2, rate of the slip without friction and omega_dot */
+  double turn[2];  /* rad/s2, omega_1_dot and omega_2_dot that a hub carrier gives */
   double brake;    /* N m */
 } Action;
 
@@ -25,6 +26,7 @@ typedef struct Body {
   double mu, s;                                /* 1 and m, coefficients of the ground's friction; zero where it pulls */
   double kappa;                                /* tau = -(s N + brake) kappa */
   int held;                                    /* omega_3 is held at zero */
+  int guided;                                  /* no moment turns the wheel across its axle: a hub carrier does */
 } Body;
 
 /* What follows. */
@@ -33,16 +35,18 @@ typedef struct Motion {
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
 } Motion;
 
-/* Linear in the action and in the horizontal force f of the ground:
+/* Linear in the action and in the horizontal force f of the ground. Unless a hub carrier gives omega_1 and omega_2:
  *   [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ]
  *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x          ]
  *   J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */
 static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
   const Carrier* c = &b->carrier;
   double p = b->inertia.p, M_2 = on->M.M_2 - c->eta * f_x, M_3 = on->M.M_3 + c->rho * f_x;
-  Accelerations a;
-  a.omega_1_dot = (on->M.M_1 - b->l * on->N_rest + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
-  a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
+  Accelerations a = {.omega_1_dot = on->turn[0], .omega_2_dot = on->turn[1]};
+  if (!b->guided) {
+    a.omega_1_dot = (on->M.M_1 - b->l * on->N_rest + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
+    a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
+  }
   a.N = on->N_rest + w->m * b->l * a.omega_1_dot;
   a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
   a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
@@ -53,23 +57,28 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   };
 }
 
-INLINED Body body_of(const WheelScene* scene, const double* y) {
+INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
   Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[WHEEL_PHI])};
   const Carrier* c = &b.carrier;
   Action* a = &b.given;
-  double yield = scene->guided ? 0 : 1; /* on a hub carrier no moment turns the wheel across its axle */
   double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p, F_x, F_y;
   road_force(scene, c, &F_x, &F_y);
   b.h = w->r_0 * c->sin_theta + w->r;
   b.l = w->r_0 * c->cos_theta;
   b.per_mass = 1 / w->m;
   b.per_spin = 1 / w->J_z;
-  b.per_22 = yield / b.inertia.I_22;
-  b.per_tilt = yield / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
-  b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
-  b.g_y = w->m * b.l * b.per_tilt * b.h;
+  b.guided = guided;
+  if (guided) {
+    a->turn[0] = load->turn[1];
+    a->turn[1] = guided_rate(c, load->turn[0]);
+  } else {
+    b.per_22 = 1 / b.inertia.I_22;
+    b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
+    b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
+    b.g_y = w->m * b.l * b.per_tilt * b.h;
+  }
   a->M = moment_of(scene, &b.inertia, c);
   a->N_rest = w->m * (w->g - w->r_0 * c->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + c->omega_1 * (w->r * c->sin_theta * c->omega_2 + c->eta * c->omega_3 - c->psi_dot * b.h);
@@ -112,7 +121,7 @@ static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
 }
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi) {
-  Body b = body_of(scene, reduced);
+  Body b = body_of(scene, reduced, scene->guided);
   return slip_of(&scene->wheel, &b, chi);
 }
 
@@ -138,7 +147,7 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   static const Action none = {.brake = 0};
   const double part = 2 * 3.141592653589793 / parts, rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
-  Body b = body_of(scene, reduced);
+  Body b = body_of(scene, reduced, scene->guided);
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
@@ -166,9 +175,9 @@ static inline void set_velocity(const Carrier* c, double h, double u_x, double u
 }
 
 /* Returns N, infinite where the wheel jams. */
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   Sines chi = wheel_sines(y[WHEEL_CHI]); /* first: behind the call nothing is left in registers */
-  Body b = body_of(scene, y);
+  Body b = body_of(scene, y, guided);
   const Carrier* c = &b.carrier;
   double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
@@ -180,6 +189,15 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
 }
 
+/* Apart, so that nothing of one is computed for the other. */
+__attribute__((noinline)) static double guided_rates(const WheelScene* scene, const double* y, double* y_dot) {
+  return rates(scene, y, y_dot, 1);
+}
+
+static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
+  return scene->guided ? guided_rates(scene, y, y_dot) : rates(scene, y, y_dot, 0);
+}
+
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   Carrier c = carrier_of(wheel, y);
   wheel_reduced.kinematics(wheel, y, out);
@@ -188,7 +206,7 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  Body b = body_of(scene, y);
+  Body b = body_of(scene, y, scene->guided);
   Sines chi = wheel_sines(y[WHEEL_CHI]);
   double d_x = chi.cosine, d_y = chi.sine;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);

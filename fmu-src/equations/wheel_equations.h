@@ -43,9 +43,10 @@ void wheel_set_slope(WheelParameters* wheel, double g, double slope, double dire
 
 /* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */
 typedef struct WheelLoad {
-  double F[3];  /* N at O, fixed axes X, Y, Z */
-  double M[3];  /* N m on the wheel, carrier axes e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
-  double brake; /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
+  double F[3];    /* N at O, fixed axes X, Y, Z */
+  double M[3];    /* N m on the wheel, carrier axes e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
+  double brake;   /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
+  double turn[2]; /* rad/s2, psi_ddot and theta_ddot, which the hub carrier gives a guided wheel */
 } WheelLoad;
 
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
@@ -87,8 +88,8 @@ typedef struct WheelScene {
   WheelGround ground;
   WheelContactMode contact;
   double mu_slide; /* >= 0, coefficient of sliding friction: the ground's horizontal force is mu_slide N */
-  /* Not 0: on a hub carrier psi and theta stay, so omega_1 = omega_2 = 0: the limit of infinite moments of inertia
-   * across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
+  /* Not 0: on a hub carrier psi_dot and theta_dot are given: their rates are `load.turn`, whatever acts: the limit of
+   * infinite moments of inertia across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
   int guided;
 } WheelScene;
 
@@ -226,10 +227,9 @@ WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* 
  * somebody who looks along e1 (lambda_y). */
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
 
-/* The moment of the hub carrier on a guided wheel, N m, along e1 and e2 (out), under the ground's force lambda and the
- * load's moment M. */
-void wheel_guide_moment(const WheelParameters* wheel, const WheelKinematics* motion, const double lambda[3],
-                        const double M[3], double out[2]);
+/* The moment of the hub carrier on a guided wheel, N m, along e1 and e2 (out). */
+void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, const WheelDynamics* dynamics,
+                        double out[2]);
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);

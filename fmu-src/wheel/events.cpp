@@ -34,9 +34,9 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   const WheelFriction& law = now.scene.friction;
   const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
+  const auto hold = [&](const WheelScene& scene) { return held_at(setup, scene, y); };
   if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin)
-                                        : held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
+    return std::fabs(spin) > spin_error ? -std::fabs(spin) : now.at(t, hold).reserve / setup.moment_scale;
   return -now.scene.load.brake / setup.moment_scale;
 }
 
@@ -58,7 +58,7 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   const int slip = setup.sliding->slip_index;
   double least = least_slip(setup, t);
   if (y[slip] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
-    const Rates rates = rates_of(setup, now.scene_at(t), y);
+    const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
     const double fall = std::fmin(rates.y_dot[slip], 0), turning = y[slip] * rates.y_dot[slip + 1];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.own_time * setup.own_time / setup.length);

@@ -92,7 +92,7 @@ void apply_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
   const InForce before = now;
   apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
-  w.demand.changed = false;
+  w.demand.news = News::none;
   if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);
   log_changes(w, before);

@@ -39,63 +39,77 @@ bool continues(const double* c, double tau, double rounding, const double* next)
   return true;
 }
 
+[[gnu::noinline]] void add_turn(const double (*guide)[max_order + 1], double tau, WheelLoad& load) {
+  for (int i = 0; i < 2; ++i) load.turn[i] = rate_at(guide[i], tau);
+}
+
 }  // namespace
 
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
-  return input < brake_input ? &load.M[input - 3] : &load.brake;
+  if (input < brake_input) return &load.M[input - 3];
+  return input == brake_input ? &load.brake : &load.turn[input - guide_input];
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-WheelLoad load_of(const Polynomials& inputs, double tau) {
-  WheelLoad load;
-  for (int i = 0; i < inputs_count; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
+void set_load(const Polynomials& inputs, bool turning, double tau, WheelLoad& load) {
+  for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
+  load.turn[0] = load.turn[1] = 0;
+  if (turning) add_turn(inputs + guide_input, tau, load);
   if (!(load.brake > 0)) load.brake = 0;
-  return load;
 }
 
-WheelLoad load_rate_of(const Polynomials& inputs) {
+WheelLoad load_rate_of(const Polynomials& inputs, double tau) {
   WheelLoad rate = {};
-  for (int i = 0; i < inputs_count; ++i) *load_entry(rate, i) = inputs[i][1];
-  if (inputs[brake_input][0] <= 0) rate.brake = std::fmax(rate.brake, 0);
+  for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(inputs[i], tau);
+  for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * inputs[i][2] + tau * 6 * inputs[i][3];
+  if (value_at(inputs[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
   return rate;
 }
 
-void Inputs::take_over(double t, const Polynomials& asked) {
+void Inputs::take_over(double t, const Polynomials& asked, bool guided) {
   origin = t;
+  count = guided ? inputs_count : guide_input;
   std::memcpy(c, asked, sizeof c);
   loaded = varies = false;
-  for (const auto& polynomial : c) {
-    loaded |= acts(polynomial, 0);
-    varies |= acts(polynomial, 1);
+  turning = guided && std::any_of(c + guide_input, c + count, [](const auto& input) { return acts(input, 0); });
+  for (int i = 0; i < (turning ? inputs_count : guide_input); ++i) {
+    loaded |= acts(c[i], 0);
+    varies |= acts(c[i], 1);
   }
   braked = acts(c[brake_input], 0);
 }
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {
   const double tau = varies ? t - origin : 0;
-  for (int i = 0; i < inputs_count; ++i)
+  for (int i = 0; i < count; ++i)
     if (!continues(c[i], tau, rounding, asked[i])) return true;
   return false;
 }
 
 void Inputs::stay(double t, Polynomials& asked) const {
-  for (int i = 0; i < inputs_count; ++i) {
+  const auto hold = [&](int i) {
     std::fill_n(asked[i] + 1, max_order, 0.0);
     asked[i][0] = value_at(c[i], t - origin);
-  }
+  };
+  for (int i = 0; i < guide_input; ++i) hold(i);
+  for (int i = guide_input; i < count; ++i) hold(i);
   asked[brake_input][0] = std::fmax(asked[brake_input][0], 0);  // like any brake that is set
 }
 
 int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
-  if (!varies) return 0;
   int found = 0;
-  for (const auto& polynomial : c) {
+  const auto add = [&](const double* polynomial) {
     double zeros[2];
     for (int k = zeros_of_slope(polynomial, zeros); k > 0; --k) {
       const double t = origin + zeros[k - 1];
       if (t > t_lo && t < t_hi) instants[found++] = t;
     }
+  };
+  for (int i = 0; i < count; ++i) add(c[i]);
+  for (int i = guide_input; i < count; ++i) {  // their slopes act too
+    const double slope[] = {c[i][1], 2 * c[i][2], 3 * c[i][3], 0};
+    add(slope);
   }
   std::sort(instants, instants + found);
   return found;

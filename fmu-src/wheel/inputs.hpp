@@ -1,48 +1,54 @@
-// The seven inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
-// weight, and the brake.
+// The nine inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
+// weight, the brake, and how the hub carrier of a guided wheel turns.
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m],
-// the capacity of the dry brake. What the caller asks for is in force from the next step on.
+// the capacity of the dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `turn`. What the
+// caller asks for is in force from the next step on.
 #pragma once
 
 #include "wheel_equations.h"
 
 namespace wheel {
 
-inline constexpr int inputs_count = 7, brake_input = 6, max_order = 3, most_extremes = inputs_count * (max_order - 1);
+inline constexpr int inputs_count = 9, brake_input = 6, guide_input = 7, max_order = 3,
+                     most_extremes = 2 * inputs_count + inputs_count - guide_input;
 
 inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
-// The load at tau, s, from the origin; and its rate at the origin: a brake at zero can only be put on.
-WheelLoad load_of(const Polynomials& inputs, double tau = 0);
-WheelLoad load_rate_of(const Polynomials& inputs);
+// The load (out) at tau, s, from the origin, and its rate there: a brake at zero can only be put on. `turning`: the
+// carrier's inputs act.
+void set_load(const Polynomials& inputs, bool turning, double tau, WheelLoad& load);
+WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
 
 // The inputs in force.
 struct Inputs {
   double origin = 0;  // s, own clock
   Polynomials c = {};
+  int count = guide_input;  // so many can act: all where a hub carrier can turn the wheel
   // What follows from the polynomials.
-  bool loaded = false;  // some input is not zero
-  bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
-  bool varies = false;  // some input depends on time
+  bool loaded = false;   // some input is not zero
+  bool braked = false;   // the brake is in use: its capacity or one of its derivatives is not zero
+  bool varies = false;   // some input depends on time
+  bool turning = false;  // the carrier's rates or one of their derivatives are not zero
 
-  void take_over(double t, const Polynomials& asked);
+  void take_over(double t, const Polynomials& asked, bool guided);
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
-  WheelLoad load_at(double t) const { return load_of(c, t - origin); }
+  void set_load_at(double t, WheelLoad& load) const { set_load(c, turning, t - origin, load); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;
-  // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
+  // Instants strictly inside (t_lo, t_hi), ascending, at which an input, or the slope of a carrier's, has an extreme;
+  // returns their number.
   int extremes(double t_lo, double t_hi, double* instants) const;
   // The first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a corner, s;
   // infinite where there is none.
   double corner(double t, double until) const;
 };
 
-// The entry of a load that one input sets.
+// The entry of a load that one input, or the slope of one, sets.
 double* load_entry(WheelLoad& load, int input);
 
 }  // namespace wheel

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide.hpp"
+
 namespace wheel {
 namespace {
 
@@ -54,6 +56,8 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   apply_loads(setup, road_asked(demand), t, demand.inputs, now);
+  if (setup.turns())
+    turn_carrier(setup, now.scene, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), y);
   now.layered = false;
   decide_contact(setup, t, y, now);
 }
@@ -66,8 +70,8 @@ void apply_loads(const Setup& setup, const Road& road, double t, const Polynomia
   now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
   now.scene.ground = now.pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
   now.scene.guided = setup.guided;
-  now.scene.load = load_of(inputs);
-  now.inputs.take_over(t, inputs);
+  now.inputs.take_over(t, inputs, setup.turns());
+  set_load(inputs, now.inputs.turning, 0, now.scene.load);
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
@@ -127,7 +131,7 @@ double least_slip(const Setup& setup, double t) {
 // Rounding is relative to mu_max N, and that of a tangential force of zero.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
-  const WheelDynamics dynamics = dynamics_of(setup, now.scene_at(t), y);
+  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
   const double* lambda = dynamics.lambda;
   const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;

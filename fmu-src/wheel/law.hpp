@@ -7,7 +7,7 @@
 namespace wheel {
 
 // What the caller has set is in force from t on, and with it the contact and the law of friction at the state y. Writes
-// the slip in y.
+// the slip and what a jump of the carrier's rates changes in y.
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // Road and inputs, and what follows from them alone. A mu_max set below mu_slide counts for both.

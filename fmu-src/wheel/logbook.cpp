@@ -58,10 +58,11 @@ void look_at_grip(Wheel& wheel, double t) {
   constexpr double looks = 16, dry_road = 1;
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
-  if (t < wheel.run.grip_due || is_limited(setup, now.road) || !now.inputs.loaded) return;
+  if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
   double y[WHEEL_MAX_STATES];
   wheel.solver.read(t, y);
-  const double mu = wheel_required_friction(dynamics_of(setup, now.scene_at(t), y).lambda);
+  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
+  const double mu = wheel_required_friction(dynamics.lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
   wheel.run.grip_due = exceeds ? solver::never : t + setup.own_time / looks;
   if (exceeds)

@@ -2,13 +2,13 @@
 // stages. Times in s on the own clock.
 //
 //   stage           writes, besides the solution
-//   apply_demand    run: in_force, y (a slip), phase (an orbit is left), last_change, transitions, counted;
-//                   demand.changed
+//   apply_demand    run: in_force, y (a slip, a jump of the carrier's rates), phase (an orbit is left), last_change,
+//                   transitions, counted; demand.news
 //   set_in_motion   run: phase, counted
 //   proceed         run: grip_due; t, y, in_force, observed, transitions, at events that do not end the run
-//   arrive          run: t, observed; demand: inputs and changed, where an input varies
+//   arrive          run: t, observed; demand: inputs and news, where an input varies
 //   end             run: t, y, phase, ended_by, counted
-//   fail            run: as before the step, but for the phase; demand.changed: as before
+//   fail            run: as before the step, but for the phase; demand.news: as before
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,8 +59,8 @@ Outcome start_solver(Wheel& w) {
 // Stage 1: what was set since the last step is in force.
 Outcome apply_demand(Wheel& w) {
   Run& run = w.run;
-  const bool changed = w.demand.changed && has_changed(w);
-  w.demand.changed = false;
+  const bool changed = w.demand.news != News::none && has_changed(w);
+  w.demand.news = News::none;
   if (!changed) return Outcome::stepped;
   const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
@@ -90,6 +90,9 @@ bool enter_orbit(Wheel& w) {
   const InForce& now = w.run.in_force;
   const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
   if (!w.setup.unfolds || acted_on || now.slides()) return false;
+  if (w.setup.guided && w.run.phase == Phase::at_start &&
+      !std::equal(w.run.y, w.run.y + WHEEL_MAX_STATES, w.setup.start))
+    return false;  // the carrier has turned it at the start
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
   const solver::Problem problem = problem_of(w);
@@ -168,7 +171,7 @@ Outcome step_to(Wheel& w, double t) {
       move_to(w, solver.known_until());
       return Outcome::event;
     }
-    look_at_grip(w, std::fmin(t, solver.known_until()));
+    if (w.run.in_force.inputs.loaded) look_at_grip(w, std::fmin(t, solver.known_until()));
     const long long steps = std::max((solver.counters().rhs - before) / evaluations_per_step, 1LL);
     work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
@@ -201,7 +204,7 @@ void arrive(Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return;
   inputs.stay(t, w.demand.inputs);
-  w.demand.changed = true;
+  w.demand.news = News::stays;
 }
 
 // The event of the solution that ends the run.
@@ -229,7 +232,8 @@ Outcome advance_by_stages(Wheel& w, double t) {
   state_now(w);
   Run before = w.run;
   before.counted = counters_of(w.run, w.solver);
-  const bool changed = w.demand.changed, moves = t > w.run.t;
+  const News news = w.demand.news;
+  const bool moves = t > w.run.t;
   w.failure = nullptr;
   Outcome outcome = apply_demand(w);
   if (outcome == Outcome::stepped && moves) outcome = set_in_motion(w);
@@ -238,7 +242,7 @@ Outcome advance_by_stages(Wheel& w, double t) {
   if (outcome == Outcome::event) end(w);
   if (outcome == Outcome::failed) {
     fail(w, before);
-    w.demand.changed = changed;
+    w.demand.news = news;
   }
   return outcome;
 }
@@ -246,7 +250,7 @@ Outcome advance_by_stages(Wheel& w, double t) {
 }  // namespace
 
 Outcome advance(Wheel& w, double t) {
-  if (w.demand.changed || !is_known(w, t)) return advance_by_stages(w, t);
+  if (w.demand.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
   arrive(w, t);
   return Outcome::stepped;
 }

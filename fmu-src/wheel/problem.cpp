@@ -20,7 +20,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   const WheelFormulation& formulation =
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, now.scene);
   const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
-  const double N = now.inputs.varies ? rates(now.scene_at(t)) : rates(now.scene);
+  const double N = now.at(t, rates);
   if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
@@ -108,7 +108,7 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.owner = &wheel;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
-  problem.extremes = extremes;
+  if (now.inputs.varies) problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   const int spin = setup.formulation->spin_index;

@@ -79,8 +79,13 @@ struct InForce {
 
   WheelScene scene_at(double t) const {
     WheelScene scene_then = scene;
-    if (inputs.varies) scene_then.load = inputs.load_at(t);
+    if (inputs.varies) inputs.set_load_at(t, scene_then.load);
     return scene_then;
+  }
+  // What `use` makes of the scene at t, without a copy of one that stays.
+  template <class Use>
+  auto at(double t, const Use& use) const {
+    return inputs.varies ? use(scene_at(t)) : use(scene);
   }
 };
 

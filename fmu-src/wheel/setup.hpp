@@ -20,6 +20,9 @@ inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, lo
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
+// What is new since the last step: nothing; inputs that varied in it stay where they arrived; something was set.
+enum class News : unsigned char { none, stays, set };
+
 // Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and the road may be set
 // again later and are in force from the next step on.
 struct Demand {
@@ -27,8 +30,8 @@ struct Demand {
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
-  bool changed = false;  // something has been set since the last step
-  bool slides = false;   // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
+  News news = News::none;
+  bool slides = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
 
   // Of a variable below stored_count, or of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
@@ -54,7 +57,7 @@ struct Setup {
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool guided;   // a hub carrier keeps psi and theta
+  bool guided;   // a hub carrier gives psi and theta
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
   double tolerance;                // relative, of the whole solution
@@ -69,9 +72,14 @@ struct Setup {
   double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
   double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
+
+  bool turns() const { return guided && !exchanged; }  // the carrier, at the rates that are inputs
 };
 
 Setup setup_of(const Demand& demand);
+
+// The initial state (out) of a wheel that turns across its axle at these rates, rad/s. `parameters`: of the demand.
+void start_at(const Setup& setup, const double* parameters, double psi_dot, double theta_dot, double* y);
 
 // The equations of the contact's mode.
 inline const WheelFormulation& formulation_of(const Setup& setup, const WheelScene& scene) {

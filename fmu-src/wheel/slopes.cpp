@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 
+#include "guide.hpp"
 #include "law.hpp"
 #include "wheel.hpp"
 
@@ -152,21 +153,28 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
     for (const unsigned angle : {variable::psi, variable::phi})
       now.y[state_index_of(angle)] = wheel_less_turns(now.y[state_index_of(angle)]);
-  const int state = setup.exchanged ? state_index_of(known) : -1;
-  double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
+  const int state = setup.exchanged ? state_index_of(known) : -1, input = static_cast<int>(known - first_input);
+  const bool guides = state < 0 && input >= guide_input;
+  double guide[] = {w.demand.value(variable::psi_dot_guide), w.demand.value(variable::theta_dot_guide)};
+  double& place = state >= 0 ? now.y[state] : guides ? guide[input - guide_input] : *load_entry(now.scene.load, input);
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, 0, scales);
-  double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
+  double h = state >= 0 ? scales[state] : std::fmax(guides ? setup.rate_scale : setup.weight, std::fabs(place));
   if (state == f.tilt_index) h *= std::sin(place);
   if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
   const bool begun = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
   const bool turns = now.scene.contact == WHEEL_SLIDES && !begun;  // the loads decide the direction of the slip
+  const Reading given = now;
   const auto move_to = [&](double x) {
     place = x;
+    if (guides) {
+      std::copy_n(given.y, WHEEL_MAX_STATES, now.y);
+      turn_carrier(setup, now.scene, guide[0], guide[1], now.y);
+    }
     if (turns) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
     return true;
   };
-  turns ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
+  turns || guides ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
   pass.complete();
   return true;
 }
@@ -195,7 +203,9 @@ void take_along_motion(Wheel& w, Pass& pass) {
   keep_ground(start);
   const WheelFormulation& formulation = formulation_of(setup, start.scene);
   const Rates rates = rates_of(setup, start.scene, start.y);
-  WheelLoad rate = load_rate_of(w.demand.inputs);
+  const Inputs& inputs = w.run.in_force.inputs;
+  const bool goes_on = setup.turns() && w.demand.news != News::set;  // as the reading
+  WheelLoad rate = goes_on ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
@@ -245,9 +255,13 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
   const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
+  const bool guides = known >= first_input + guide_input && known < stored_count;
+  if (guides && !w.setup.turns()) return true;
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
-  if (!(parameter ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
+  if (!(parameter || (guides && !has_begun(w.run.phase)) ? take_by_parameter(w, known, pass)
+                                                         : take_at_instant(w, known, pass)))
+    return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.of(unknowns[k]);
   return true;
 }

@@ -35,7 +35,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
-  archive.count(demand.changed, 0, 1);
+  archive.count(demand.news, 0, static_cast<int>(News::set));
   archive.count(demand.slides, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);

@@ -30,12 +30,17 @@ double horizontal_force(Reading& now, int axis) {
   return force[axis];
 }
 
+// m/s, of O: along e1 (0) or across it (1).
+double velocity(Reading& now, int axis) {
+  const WheelKinematics& k = now.kinematics();
+  const double sine = std::sin(k.psi), cosine = std::cos(k.psi);
+  return axis == 0 ? k.X_O_dot * cosine + k.Y_O_dot * sine : k.Y_O_dot * cosine - k.X_O_dot * sine;
+}
+
 // N m, the hub carrier's on the wheel: about e1 (0) or e2 (1).
 double guide_moment(Reading& now, int axis) {
   double moment[2] = {};
-  const WheelScene& scene = now.scene;
-  if (now.scene.guided)
-    wheel_guide_moment(&scene.wheel, &now.kinematics(), now.dynamics().lambda, scene.load.M, moment);
+  if (now.scene.guided) wheel_guide_moment(&now.scene, &now.kinematics(), &now.dynamics(), moment);
   return moment[axis];
 }
 
@@ -95,6 +100,8 @@ constexpr Access readers[] = {
     {variable::slip_y, AT(slip(now, 1))},
     {variable::M_guide_1, AT(guide_moment(now, 0))},
     {variable::M_guide_2, AT(guide_moment(now, 1))},
+    {variable::v_x, AT(velocity(now, 0))},
+    {variable::v_y, AT(velocity(now, 1))},
     {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
     {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
     {variable::phi_ddot, AT(now.dynamics().phi_ddot)},

@@ -51,9 +51,14 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
+  if (w.setup.turns()) {
+    const double psi_dot = w.demand.value(variable::psi_dot_guide),
+                 theta_dot = w.demand.value(variable::theta_dot_guide);
+    start_at(w.setup, w.demand.parameters, psi_dot, theta_dot, run.y);
+  }
   run.in_force.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
   apply(w.setup, w.demand, 0, run.y, run.in_force);
-  w.demand.changed = false;
+  w.demand.news = News::none;
   Reading start(w);
   if (check_start(w, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
@@ -61,14 +66,16 @@ bool prepare(Wheel& w, const Reporter& reporter) {
 
 InForce in_force_now(const Wheel& w, double* y) {
   InForce now = w.run.in_force;
-  if (w.demand.changed) apply(w.setup, w.demand, w.run.t, y, now);
+  if (w.demand.news != News::none) apply(w.setup, w.demand, w.run.t, y, now);
   return now;
 }
 
 Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solver)), transitions(w.run.transitions) {
   std::copy_n(state_now(w), WHEEL_MAX_STATES, y);
-  // where nothing was set, without a copy of all that is in force
-  scene = w.demand.changed ? in_force_now(w, y).scene : w.run.in_force.scene_at(w.run.t);
+  // where nothing was set, without a copy of all that is in force; and a carrier still turns as in the last step
+  const News news = w.demand.news;
+  const bool goes_on = news == News::none || (news == News::stays && setup->turns());
+  scene = goes_on ? w.run.in_force.scene_at(w.run.t) : in_force_now(w, y).scene;
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
@@ -97,7 +104,7 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   double& asked = w.demand.value(variable, order);
   if (asked == value / factorial[order]) return;
   asked = value / factorial[order];
-  w.demand.changed = true;
+  w.demand.news = News::set;
   if (w.demand.kind == Kind::model_exchange && is_running(w.run.phase)) apply_at_once(w);
 }
 
@@ -129,7 +136,7 @@ double value_of(Wheel& w, unsigned variable) {
   if (variable < stored_count) return w.demand.value(variable);
   if (!w.reading) {
     w.reading.emplace(w);
-    if (w.demand.changed) warn_of_jam(w, w.reading->scene, w.reading->y);
+    if (w.demand.news != News::none) warn_of_jam(w, w.reading->scene, w.reading->y);
   }
   return row_of(variable).read(*w.reading);
 }

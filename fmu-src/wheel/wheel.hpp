@@ -44,7 +44,7 @@ struct Wheel {
 const double* state_now(Wheel& wheel);
 
 // The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup and run,
-// demand.changed and orbit.
+// demand.news and orbit.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
 // What acts at the instant reached, with what was set since the last step; y: a copy of run.y, whose slip it writes.
@@ -124,7 +124,7 @@ int indicator_count();
 int state_index_of(unsigned variable);
 
 // What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
-// for another law at once. Writes run.in_force, run.transitions and demand.changed.
+// for another law at once. Writes run.in_force, run.transitions and demand.news.
 void apply_at_once(Wheel& wheel);
 
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins

@@ -97,6 +97,8 @@ def test_limits_of_the_description_are_those_the_library_enforces(wheel, descrip
     limits = [(v, limit, way) for v in description.modelVariables for limit, way in ((v.min, -1), (v.max, 1)) if limit]
     assert {"m", "s", "mu_max", "slope", "theta_start", "formulation", "M_brake"} <= {v.name for v, *_ in limits}
     for v, limit, way in limits:
+        if v.name in INPUTS[-2:]:
+            continue  # of a guided wheel: tests/contract/test_steering.py
         number = float(limit)
         assert not accepted(v.name, int(limit) + way if v.type != "Real" else number + way * max(1e-3, 1e-3 * number))
         if limit == v.min:
@@ -126,10 +128,11 @@ def test_choices_are_integers_with_limits_and_their_meanings(description, xml):
 
 def test_forces_and_moments_have_no_limits_in_the_description_and_the_library_refuses_what_no_wheel_bears(wheel, xml):
     limits = {v.get("name"): set(v[0].attrib) & {"min", "max"} for v in xml.find("ModelVariables")}
-    assert {name for name in INPUTS if limits[name]} == {"M_brake"}
-    w = wheel().start()
+    loads, rates = INPUTS[:-2], INPUTS[-2:]
+    assert {name for name in loads if limits[name]} == {"M_brake"} and all(len(limits[name]) == 2 for name in rates)
+    w = wheel().start(guided=True)
     assert [w.set(**{name: 1e301}) for name in INPUTS] == [DISCARD] * len(INPUTS)
-    assert [w.set(**{name: 1e299}) for name in INPUTS] == [OK] * len(INPUTS)
+    assert [w.set(**{name: 1e299}) for name in loads] == [OK] * len(loads)
     assert (w.set(M_brake=-1e-9), w.set(M_3=-1e-9)) == (DISCARD, OK)
 
 
@@ -175,7 +178,13 @@ def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_
     start, now = depends["InitialUnknowns"], depends["Outputs"]
     assert start["theta"] == {"theta_start"} and start["Z_O"] == {"r_0", "r", "theta_start"}
     assert start["tau"] > {*INPUTS, "s", "friction_law", "omega_s", "J_x", "J_y", "g"}
-    assert now["lambda_3"] > {*INPUTS} and now["theta"] == {"theta"} and now["omega_z"] == {"omega_z"}
+    rates = {"psi_dot_guide", "theta_dot_guide"}
+    assert now["lambda_3"] > {*INPUTS} - {"psi_dot_guide"} and "psi_dot_guide" not in now["lambda_3"]
+    assert now["theta"] == {"theta"} and now["omega_z"] == {"omega_z", *rates}
+    assert now["psi_dot"] == {"psi_dot", "psi_dot_guide"} and not now["psi"] & rates
+    of_rates = {name for name in now if now[name] & rates}
+    assert of_rates >= {"v_x", "v_y", "X_O_dot", "M_guide_1", "M_guide_2", "slip_x"}
+    assert not any(names & rates for names in depends["Derivatives"].values())  # model exchange refuses them
     assert depends["Derivatives"]["phi_dot"] == {"theta", "psi_dot", "omega_z"}
     assert numbered(TEXT, depends) == TEXT, "run scripts/variables"
     without = {**depends, "Outputs": {**depends["Outputs"], "theta": {"M_1"}}}

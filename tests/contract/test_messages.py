@@ -107,6 +107,12 @@ def parameters(library: Library) -> Iterator[Case]:
             [0.5, -0.75],
         ),
         (
+            "psi_dot_guide, theta_dot_guide = …, … rad/s: only the carrier of a guided wheel turns, by co-simulation; "
+            "else they and their derivatives must be 0.",
+            {"psi_dot_guide": 0.5, "theta_dot_guide": -0.75},
+            [0.5, -0.75],
+        ),
+        (
             "The initial energy or reaction force overflows: m = … kg, J_z = … kg m2, r_0 = … m, g = … m/s2, "
             "omega_z = … rad/s.",
             {"m": 1.7e308},
@@ -137,6 +143,14 @@ def values(library: Library) -> Iterator[Case]:
     yield text, answer("F_X", inf), ["fmi2SetReal", "F_X", "inf", 3]
     text = "…: … = …: whether the wheel can slide is decided at the start; the value stays …."
     yield text, answer("mu_slide", 0.4), ["fmi2SetReal", "mu_slide", 0.4, 0]
+    text, carrier = (
+        "…: … = …: only the carrier of a guided wheel turns, by co-simulation; the value stays ….",
+        "psi_dot_guide",
+    )
+    yield text, answer(carrier, 0.4), ["fmi2SetReal", carrier, 0.4, 0]
+    assert w.set_input_derivatives([carrier], [[0.0], [0.6]]) == DISCARD
+    text = "…: derivative … = … of …: only the carrier of a guided wheel turns, by co-simulation."
+    yield text, w.said(), ["fmi2SetRealInputDerivatives", 2, 0.6, carrier]
 
 
 def calls(library: Library) -> Iterator[Case]:

@@ -292,10 +292,12 @@ class Stabilised(Paper):
 
 
 class Carried(Paper):
-    """(24) of a wheel on its hub carrier, whose moments about e1 and e2 keep psi_dot and theta_dot: two unknowns more.
-    `slip`: one that slides, with coefficient and direction from X: its force stands in the place of two constraints."""
+    """(24) of a wheel on its hub carrier, whose moments about e1 and e2 give psi_ddot and theta_ddot, `turn`: two
+    unknowns more. `slip`: one that slides, with coefficient and direction from X: its force stands in the place of two
+    constraints."""
 
     slip_of: tuple[np.ndarray, np.ndarray] | None = None
+    turn: np.ndarray | float = 0.0
 
     def system(self, kappa: np.ndarray | float, load: np.ndarray | None = None) -> tuple:
         K, right = super().system(kappa, load)
@@ -308,7 +310,7 @@ class Carried(Paper):
         bordered[..., :9, :9] = K
         bordered[..., 3:6, 9:] = -transposed(self.phi_matrix)[..., :2]  # e1 and e2 in body axes
         bordered[..., 9, PSI] = bordered[..., 10, THETA] = 1
-        return bordered, np.concatenate([right, np.zeros_like(right[..., :2])], axis=-1)
+        return bordered, np.concatenate([right, np.zeros_like(right[..., :2]) + self.turn], axis=-1)
 
 
 def solved(paper: Paper, scenes: np.ndarray, load: Mapping | np.ndarray | None = None) -> np.ndarray:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from wheelfmu.fmu.driver import OK, FMU2Wheel
 from wheelfmu.truth.reference import Inputs
 
-INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
+INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake", "psi_dot_guide", "theta_dot_guide")
 
 
 @dataclass(frozen=True)

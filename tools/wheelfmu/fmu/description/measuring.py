@@ -1,5 +1,5 @@
 """Measures on the built wheel.fmu what its outputs depend on: initially on parameters and inputs, at an instant on
-inputs and continuous states, by model exchange.
+inputs and continuous states, by model exchange, and on inputs by co-simulation, where alone a hub carrier turns.
 
 No paper equation. One known is changed at a time and all unknowns are read again, in wheels off every symmetry, so that
 no dependency hides behind a zero: each real start value of zero is set to 0.1, unless the wheel then does not start, as
@@ -32,7 +32,16 @@ UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
 GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
 PLAIN: dict[str, float] = {}
-SCENES = (PLAIN, {**UNEQUAL, "s": 0.03}, LAW, {**UNEQUAL, **LAW}, {**LAW, **GUIDED, "phi_dot_start": 5e-4})
+SCENES = (
+    PLAIN,
+    {**UNEQUAL, "s": 0.03},
+    LAW,
+    {**UNEQUAL, **LAW},
+    {**LAW, **GUIDED, "phi_dot_start": 5e-4},
+    {**UNEQUAL, **GUIDED, "s": 0.03},
+)
+# Of a guided wheel: in model exchange only as states that are tried, in co-simulation by its carrier.
+TURNING = {"psi_dot": 0.4, "theta_dot": -0.3}
 # Co-simulation alone slides: a slip changes what the force of the ground depends on.
 ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
 SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
@@ -40,9 +49,10 @@ ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed
 
 
 class Unit:
-    """One instance with the values of a scene: in initialization mode, by model exchange in continuous-time mode."""
+    """One instance with the values of a scene: in initialization mode, or running, by model exchange in continuous-time
+    mode."""
 
-    def __init__(self, folder: str, kind: str, scene: dict[str, float]) -> None:
+    def __init__(self, folder: str, kind: str, scene: dict[str, float], runs: bool) -> None:
         self.description = read_model_description(folder, validate=False)
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.states: list[str] = []  # in continuous-time mode
@@ -52,8 +62,9 @@ class Unit:
             self.put(name, value)
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
-        if kind == "ModelExchange":
+        if runs:
             self.fmu.exitInitializationMode()
+        if runs and kind == "ModelExchange":
             _, self.ended, *_ = self.fmu.newDiscreteStates()
             self.fmu.enterContinuousTimeMode()
             self.states = [row.variable.derivative.name for row in self.description.derivatives]
@@ -104,8 +115,8 @@ class Unit:
 
 
 @contextmanager
-def unit(folder: str, kind: str, scene: dict[str, float]) -> Iterator[Unit]:
-    made = Unit(folder, kind, scene)
+def unit(folder: str, kind: str, scene: dict[str, float], runs: bool = True) -> Iterator[Unit]:
+    made = Unit(folder, kind, scene, runs)
     yield made
     made.fmu.freeInstance()
 
@@ -142,11 +153,17 @@ def measured(fmu: Path) -> Dependencies:
     with TemporaryDirectory() as folder:
         extract(str(fmu), folder)
         for scene in (without_zeros(folder, changed) for changed in SCENES):
-            parts = []
+            parts, turns = [], bool(scene.get("guided")) and scene["phi_dot_start"] == GENERAL["phi_dot_start"]
+            turning = TURNING if turns else {}
             for slip in SLIPS:
-                with unit(folder, "CoSimulation", {**scene, **ROAD, **slip}) as u:
+                driven = {**scene, **ROAD, **slip, **{f"{name}_guide": rate for name, rate in turning.items()}}
+                with unit(folder, "CoSimulation", driven, runs=False) as u:
                     parts += [("InitialUnknowns", u.depends(u.description.initialUnknowns, "parameter", "input"))]
+                with unit(folder, "CoSimulation", driven) as u:
+                    parts += [("Outputs", u.depends(u.description.outputs, "input"))]
             with unit(folder, "ModelExchange", scene) as u:
+                for name, rate in turning.items():
+                    u.put(name, rate)
                 parts += [("Outputs", u.depends(u.description.outputs, "input"))]
                 parts += [("Derivatives", u.depends(u.description.derivatives, "input"))]
             for section, unknowns in parts:

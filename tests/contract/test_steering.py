@@ -1,0 +1,236 @@
+"""The carrier's rates as inputs: when they act, until when their derivatives count, refusals, states, derivatives."""
+
+from collections.abc import Iterator
+from math import cos
+
+import numpy as np
+import pytest
+from support.bounds import EPSILON, absolute_error, beyond, within
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, MODEL_EXCHANGE, OK, FMU2Wheel
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import GENERAL
+
+RATES = ("psi_dot_guide", "theta_dot_guide")
+LEANS = {**GENERAL, "guided": True, "theta_start": 1.2, "phi_dot_start": -8.0, "s": 0.01}
+FREE = {"guided": False}
+SLIDES = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 2.0, "slip_y_start": -1.0}
+ANSWERS = ("psi_dot", "theta_dot", "omega_z", "v_x", "v_y", "X_O_dot", "Y_O_dot", "lambda_x", "lambda_y", "lambda_3")
+ANSWERS += ("M_guide_1", "M_guide_2", "tau", "slip_x", "slip_y", "mu_required")
+formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
+surfaces = pytest.mark.parametrize("road", [{}, SLIDES], ids=["rolls", "slides"])
+
+
+def steer(w: FMU2Wheel, *slopes: float) -> FMU2Wheel:
+    """From the present rates on with these slopes, psi first."""
+    return w.put(psi_dot_guide=0.4, theta_dot_guide=-0.3).give(
+        {"psi_dot_guide": (0.4, slopes[0]), "theta_dot_guide": (-0.3, slopes[1])}
+    )
+
+
+@formulations
+@surfaces
+def test_what_is_set_takes_effect_at_once_and_at_the_start_without_a_jump(
+    library: Library, road: dict, formulation: int
+) -> None:
+    """At the start phi_dot and slip are those of the start values; later the spin jumps."""
+    start = {**LEANS, **road, "formulation": formulation}
+    with library.wheel() as w, library.wheel() as later:
+        steer(w, 2.0, 0.5)
+        w.start(**start)
+        later.start(**start)
+        steer(later, 2.0, 0.5)
+        for wheel in (w, later):
+            found = wheel.get("psi_dot", "theta_dot", "psi_ddot", "theta_ddot", "psi", "theta")
+            within(absolute_error(found, [0.4, -0.3, 2.0, 0.5, np.pi / 2, 1.2]), 1e-14, "rates, rad/s and rad/s2")
+        phi_dot, omega_z, *slip = w.get("phi_dot", "omega_z", "slip_x", "slip_y")
+        within(abs(omega_z - (-8.0 + 0.4 * cos(1.2))), 8 * 8 * EPSILON, "spin, rad/s")
+        within(abs(phi_dot + 8.0), 8 * 8 * EPSILON, "phi_dot, rad/s")
+        within(absolute_error(slip, [road.get("slip_x_start", 0), road.get("slip_y_start", 0)]), 1e-14, "slip, m/s")
+        beyond(abs(later.get("omega_z")[0] - omega_z), 1e-3, "spin of one that turns after the start, rad/s")
+        if road:
+            beyond(abs(later.get("slip_y")[0] - slip[1]), 0.05, "slip of one that turns after the start, m/s")
+
+
+@formulations
+@surfaces
+def test_derivatives_count_until_something_is_set_after_their_step(
+    library: Library, road: dict, formulation: int
+) -> None:
+    """Moments and forces at the end of a step have its accelerations; what is set later is what follows."""
+    inertial = ("psi_ddot", "theta_ddot", "M_guide_1", "M_guide_2", "lambda_3")
+    with library.wheel() as w, library.wheel() as longer:
+        for wheel in (w, longer):
+            wheel.start(**LEANS, **road, formulation=formulation, tolerance=1e-11)
+            steer(wheel, 2.0, 0.5)
+        longer.to(0.2)
+        w.to(0.1)
+        before = w.get(*inertial)
+        steered = dict(zip(inertial, before, strict=True))
+        within(absolute_error(before[:2], [2.0, 0.5]), 1e-13, "accelerations at the end of the step, rad/s2")
+        state = w.serialized()
+        assert w.put(psi_dot_guide=w.get("psi_dot_guide")[0]).get(*inertial) == before  # the value that it has
+        assert w.put(F_X=1.0).get("psi_ddot", "theta_ddot") == pytest.approx([0.0, 0.0], abs=1e-14)
+        moment = w.put(F_X=0.0).get("M_guide_2")[0]
+        beyond(abs(moment - steered["M_guide_2"]), 0.5, "moment that the accelerations take, N m")
+        assert w.back(state).get(*inertial) == before
+        w.back(state).give({"psi_dot_guide": (0.6, 2.0), "theta_dot_guide": (-0.25, 0.5)})
+        within(absolute_error(w.get(*inertial), before), 1e-9, "the same where the slopes go on")
+        w.to(0.2)
+        within(absolute_error(w.get(*ANSWERS), longer.get(*ANSWERS)), 1e-8, "in two steps and in one")
+        held = w.back(state).to(0.2).get("psi_ddot", "theta_ddot", "psi_dot", "theta_dot")
+        within(absolute_error(held, [0.0, 0.0, 0.6, -0.25]), 1e-13, "held in the step after, rad/s")
+
+
+@pytest.fixture
+def refusing(library: Library) -> Iterator[dict[str, FMU2Wheel]]:
+    made = {"free": library.wheel(logging=True), "exchanged": exchange(library, **LEANS)}
+    made["free"].start(**{**LEANS, **FREE})
+    yield made
+    for wheel in made.values():
+        wheel.close()
+
+
+def test_only_a_guided_wheel_in_co_simulation_takes_them(library: Library, refusing: dict[str, FMU2Wheel]) -> None:
+    for wheel in refusing.values():
+        for name in RATES:
+            wheel.take_messages()
+            assert wheel.set(**{name: 0.1}) == DISCARD
+            assert wheel.said().endswith(
+                "only the carrier of a guided wheel turns, by co-simulation; the value stays 0."
+            )
+            assert wheel.set(**{name: 0.0}) == OK and wheel.get(name) == [0.0]
+    free = refusing["free"]
+    assert free.set_input_derivatives(["psi_dot_guide"], [[0.2]]) == DISCARD and "derivative 1 = 0.2" in free.said()
+    assert free.set_input_derivatives(["psi_dot_guide"], [[0.0]]) == OK and free.step(0.1) == OK
+    for order, value in ((0, 0.1), (2, 0.1)):
+        w = library.wheel(logging=True)
+        assert w.set(**{**LEANS, **FREE, **({"psi_dot_guide": value} if order == 0 else {})}) == OK
+        if order:
+            assert w.set_input_derivatives(["theta_dot_guide"], [[0.0], [value]]) == OK
+        assert w.initialise() == ERROR and "only the carrier of a guided wheel turns" in w.said()
+        w.close()
+
+
+def test_absurd_rates_are_refused_and_the_largest_can_be_computed(library: Library) -> None:
+    with library.wheel(logging=True) as w:
+        w.start(**LEANS, keep_contact=True)
+        for name in RATES:
+            assert [w.set(**{name: rate}) for rate in (1.0001e4, -1.0001e4, np.inf, np.nan)] == [DISCARD] * 4
+        assert w.put(psi_dot_guide=1e4).step(0.01) == OK
+        within(abs(w.get("psi_dot")[0] / 1e4 - 1), 1e-12, "rate, relative")
+        assert w.put(psi_dot_guide=0.0, theta_dot_guide=-1e4).step(0.01) == DISCARD  # it lies flat
+        assert "lies flat" in w.texts()[-1]
+
+
+@formulations
+@surfaces
+def test_a_state_restored_goes_on_bit_identically(library: Library, road: dict, formulation: int) -> None:
+    def drive(w: FMU2Wheel) -> list[bytes]:
+        bits = []
+        for k in range(6):
+            if k % 3 == 0:
+                steer(w, 1.0 - k, 0.5)
+            bits += [w.bits(), w.by(0.03).bits()]
+        return bits
+
+    with library.wheel() as w, library.wheel() as other:
+        steer(w, 2.0, 0.5)
+        w.start(**LEANS, **road, formulation=formulation)
+        states = [w.serialized(), w.by(0.05).serialized(), w.put(psi_dot_guide=-0.2).serialized()]
+        want = [drive(w.back(state)) for state in states]
+        for state, bits in zip(states, want, strict=True):
+            assert drive(other.back(state)) == bits
+        assert want[1] != want[0]
+
+
+def test_a_run_restored_at_its_start_keeps_the_rates_that_it_started_with(library: Library) -> None:
+    """The start is not computed anew from rates that were set later."""
+    with library.wheel() as w, library.wheel() as other:
+        steer(w, 0.0, 0.0)
+        w.start(**{**LEANS, "s": 0.0})
+        w.put(psi_dot_guide=0.0, theta_dot_guide=0.0)
+        spin = w.get("omega_z")[0]
+        beyond(abs(spin + 8.0), 1e-3, "spin off phi_dot, rad/s")
+        state = w.serialized()
+        for wheel in (w, other.back(state)):
+            found = wheel.to(1.0).get("omega_z", "psi_dot", "theta")
+            within(absolute_error(found, [spin, 0.0, 1.2]), 1e-12, "spin, rad/s, and angles, rad")
+
+
+@formulations
+@surfaces
+@pytest.mark.parametrize("when", ["initialization", "start", "run"])
+def test_directional_derivatives_by_the_rates_are_differences(
+    library: Library, road: dict, formulation: int, when: str
+) -> None:
+    def ready() -> FMU2Wheel:
+        w = library.wheel()
+        steer(w, 0.7, 0.2)
+        if when == "initialization":
+            return w.initializing(**LEANS, **road, formulation=formulation)
+        w.start(**LEANS, **road, formulation=formulation)
+        return w if when == "start" else w.by(0.05).put(F_X=1.0)
+
+    def difference(name: str, h: float) -> np.ndarray:
+        sides = []
+        for way in (1, -1):
+            w = ready()
+            sides.append(np.array(w.put(**{name: w.get(name)[0] + way * h}).get(*ANSWERS)))
+            w.close()
+        return (sides[0] - sides[1]) / (2 * h)
+
+    w = ready()
+    slopes = w.jacobian(ANSWERS, RATES)
+    for k, name in enumerate(RATES):
+        size = 1 + np.abs(slopes[:, k])
+        within(float((np.abs(difference(name, 1e-4) - slopes[:, k]) / size).max()), 1e-5, f"slopes by {name}, relative")
+        beyond(float(np.abs(slopes[:, k]).max()), 1.0, f"slopes by {name}")
+    w.close()
+    with library.wheel() as free:
+        assert not free.start(**{**LEANS, **FREE}).jacobian(ANSWERS, RATES).any()
+
+
+@surfaces
+def test_output_derivatives_follow_the_course(library: Library, road: dict) -> None:
+    """During a step's slopes, and after it until something is set."""
+    names, h = ("v_x", "v_y", "psi_dot", "lambda_y", "M_guide_1", "M_guide_2", "slip_x"), 1e-4
+    with library.wheel() as w:
+        w.start(**LEANS, **road, tolerance=1e-12)
+        course = {"psi_dot_guide": (0.4, 2.0, -1.5, 0.7), "theta_dot_guide": (-0.3, 0.5, 0.8, -0.6)}
+        w.give(course)
+        rows, read = [], w.rates(names)
+        for k in range(1, 6):
+            w.give(course, since=w.time)
+            w.to(0.1 + (k - 3) * h)
+            rows.append(w.get(*names))
+            if k == 3:
+                left = read()
+                w.give(course, since=w.time)
+                right = read()
+        slopes = (8 * (np.array(rows[3]) - rows[1]) - (np.array(rows[4]) - rows[0])) / (12 * h)
+        for found in (left, right):
+            within(float((np.abs(slopes - found) / (1 + np.abs(slopes))).max()), 1e-6, "rates, relative")
+
+
+STEER, LEAN = {"psi_dot_guide": 0.4}, {"theta_dot_guide": -0.3}
+OTHER = {"psi_dot_guide": 5.0, "theta_dot_guide": 3.0}
+
+
+@surfaces
+def test_both_rates_jump_together_in_whatever_order_they_are_set(library: Library, road: dict) -> None:
+    found = []
+    for order in ((STEER, LEAN), (LEAN, STEER), (OTHER, STEER | LEAN)):
+        with library.wheel() as w:
+            w.start(**LEANS, **road).by(0.01)
+            for rates in order:
+                w.put(**rates)
+            found.append(w.get(*ANSWERS))
+    assert found[0] == found[1] == found[2]
+
+
+def test_model_exchange_has_the_inputs_at_zero(library: Library) -> None:
+    w = exchange(library, **LEANS)
+    assert w.kind == MODEL_EXCHANGE and w.get(*RATES) == [0.0, 0.0] and not w.jacobian(("psi_dot", "v_x"), RATES).any()
+    w.close()

@@ -1,0 +1,355 @@
+"""A hub carrier that steers and leans: closed forms, its own reference, what a jump of its rates does, springs, power.
+
+R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta). SI units.
+"""
+
+from collections.abc import Sequence
+from math import cos, pi, radians, sin, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson, solve_ivp
+from support.bounds import absolute_error, beyond, within
+
+from wheelfmu.fmu.driver import OK, STATES, Value, shifted
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.reference import Wheel
+from wheelfmu.truth.reference.carried import Carried, Piece
+from wheelfmu.truth.scenes import GENERAL
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import UPRIGHT
+
+M, R_0, TUBE, J_X, J_Z, G = 20.0, 0.3, 0.05, 0.9, 1.8, 9.81
+R = R_0 + TUBE
+V = 10.0  # m/s
+ROLLS = {**UPRIGHT, "guided": True, "phi_dot_start": -V / R}
+CAMBER = radians(75)
+formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
+READ = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "omega_z", "omega_z_dot", "v_x", "v_y")
+READ += ("lambda_3", "lambda_x", "lambda_y", "tau", "M_guide_1", "M_guide_2", "slip_x", "slip_y")
+
+
+def schedule(pieces: Sequence[Piece]) -> Schedule:
+    rows = []
+    for piece in pieces:
+        inputs = {"psi_dot_guide": piece.psi_dot, "theta_dot_guide": piece.theta_dot, **piece.loads}
+        rows.append((piece.begin, {name: shifted(row, -piece.begin) for name, row in inputs.items()}))
+    return Schedule(tuple(rows))
+
+
+def driven(library: Library, pieces: Sequence[Piece], times: Sequence[float], tolerance=1e-12, **start: Value) -> Run:
+    return library.simulate(times, tolerance, schedule(pieces), **{**UPRIGHT, "guided": True, **start})
+
+
+def held(psi_dot: float, theta_dot: float = 0.0, end: float = 1.0, **loads: float) -> Piece:
+    return Piece(0.0, end, (psi_dot,), (theta_dot,), {name: (value,) for name, value in loads.items()})
+
+
+# ---- closed forms ----
+
+
+@formulations
+def test_in_a_steady_turn_the_road_gives_m_v_psi_dot_and_the_carrier_turns_the_angular_momentum(
+    library: Library, formulation: int
+) -> None:
+    turn, times = 0.5, np.linspace(0, 4, 9)
+
+    def error(judged: float) -> float:
+        run = driven(library, [held(turn * judged, end=4.0)], times, **ROLLS, formulation=formulation)
+        want = {"lambda_x": 0.0, "lambda_y": M * V * turn, "lambda_3": M * G, "mu_required": V * turn / G, "v_x": V}
+        want |= {"v_y": 0.0, "M_guide_1": -(J_Z + M * R**2) * V / R * turn, "M_guide_2": 0.0, "psi": turn * times}
+        want |= {"X_O": V / turn * np.sin(turn * times), "Y_O": V / turn * (1 - np.cos(turn * times))}
+        return max(absolute_error(run[name], value) for name, value in want.items())
+
+    within(error(1.0), 1e-10, "forces, N, moments, N m, path, m")
+    beyond(error(1.001), 1e-2, "the same with 0.1 % more")
+
+
+@formulations
+def test_on_a_cambered_circle_forces_and_moment_are_those_of_a_rigid_body_that_turns_about_the_vertical(
+    library: Library, formulation: int
+) -> None:
+    """The wheel's angular momentum and that of its mass turn with psi: H' = psi_dot e_Z x H, J_x = J_y."""
+    turn, spin = 0.8, -12.0
+    rho, eta = R_0 + TUBE * sin(CAMBER), TUBE * cos(CAMBER)
+    omega = np.array([0.0, turn * sin(CAMBER), spin])
+    v = eta * omega[1] - rho * spin
+    left, N = M * v * turn, M * G
+    up = np.array([0.0, sin(CAMBER), cos(CAMBER)])
+    gyroscopic = np.cross(turn * up, np.array([J_X, J_X, J_Z]) * omega)
+    ground = np.array([0.0, cos(CAMBER) * left + sin(CAMBER) * N, -sin(CAMBER) * left + cos(CAMBER) * N])
+    moment = gyroscopic - np.cross([0.0, -rho, -eta], ground)
+    start = {"theta_start": CAMBER, "phi_dot_start": spin - turn * cos(CAMBER), "formulation": formulation}
+    run = driven(library, [held(turn)], [0.0, 0.5, 1.0], **start)
+    want = {"v_x": v, "v_y": 0.0, "omega_z": spin, "lambda_y": left, "lambda_3": N, "lambda_x": 0.0}
+    want |= {"M_guide_1": moment[0], "M_guide_2": moment[1], "tau": 0.0}
+    within({name: absolute_error(run[name], value) for name, value in want.items()}, 1e-10, "forces, speeds, moments")
+    beyond(abs(gyroscopic[0]), 10.0, "gyroscopic moment, N m")
+
+
+@formulations
+def test_a_heading_that_gathers_speed_asks_for_the_inertia_across_the_axle(library: Library, formulation: int) -> None:
+    """Upright: M_guide_2 = I_22 psi_ddot, where I_22 turns with phi: at rest here."""
+    start = {"phi_start": 0.3, "phi_dot_start": 0.0, "formulation": formulation}
+    gathers = [Piece(0.0, 1.0, (0.0, 2.0), (0.0,))]
+    I_22 = 0.7 * sin(0.3) ** 2 + 1.2 * cos(0.3) ** 2
+    at_rest = driven(library, gathers, [0.0, 1e-3], **start, J_x=0.7, J_y=1.2)
+    within(abs(at_rest["M_guide_2"][0] - 2 * I_22), 1e-12, "moment about e2, N m")
+    run = driven(library, gathers, [0.0, 0.5, 1.0], **start)
+    within(absolute_error(run["M_guide_2"], 2 * J_X), 1e-12, "moment about e2, N m")
+    within(absolute_error(run["psi_ddot"], 2.0), 1e-12, "psi_ddot, rad/s2")
+    within(absolute_error(run["psi"], run.t**2), 1e-13, "heading, rad")
+
+
+def test_a_turn_slides_out_where_it_needs_more_than_the_road_gives(library: Library) -> None:
+    """At m v psi_dot = mu_max N, sideways and to the right of a left turn."""
+    road = {"mu_max": 0.3, "mu_slide": 0.25}
+    grows = Piece(0.0, 1.0, (0.0, 0.5), (0.0,))
+    limit = 0.3 * G / V / 0.5  # s
+    times = np.array([0.0, limit - 1e-6, limit + 1e-6, limit + 0.1])
+    run = driven(library, [grows], times, **ROLLS, **road)
+    assert run["contact_mode"].tolist() == [0, 0, 1, 1] and run["slip_y"][-1] < -0.01
+    within(absolute_error(np.hypot(run["lambda_x"], run["lambda_y"])[2:], 0.25 * M * G), 1e-9, "friction, N")
+    wide = driven(library, [grows], times, **ROLLS, mu_max=0.31, mu_slide=0.25)
+    assert wide["contact_mode"].tolist() == [0, 0, 0, 1]
+
+
+def test_the_straight_wheel_in_its_turning_frame_takes_the_same_path(library: Library) -> None:
+    """It is pushed by the Coriolis forces m v_y psi_dot and -m v_x psi_dot, as its path is laid by hand."""
+    load = {"F_Z": (-2943.0,)}
+    ramp = Piece(0.0, 1.0, (0.0, 0.5), (0.0,), load)
+    turn = Piece(1.0, 2.0, (0.5,), (0.0,), load)
+    stop = Piece(2.0, 3.0, (0.5,), (0.0,), load | {"M_brake": (300.0,)})
+    run = driven(library, [ramp, turn, stop], [0.0, 2.0, 3.0], **ROLLS)
+    stopped = 2 + V / R * (J_Z + M * R**2) / 300.0
+    way = np.zeros(2)
+    for begin, end in ((0.0, 1.0), (1.0, 2.0), (2.0, stopped)):
+        times = np.linspace(begin, end, 2001)
+        psi = times**2 / 4 if end == 1 else 0.25 + (times - 1) / 2
+        v = V * (stopped - times) / (stopped - 2) if begin == 2 else np.full_like(times, V)
+        way += [simpson(v * np.cos(psi), x=times), simpson(v * np.sin(psi), x=times)]
+    within(absolute_error([run["X_O"][-1], run["Y_O"][-1]], way), 1e-8, "place where it stops, m")
+    within(absolute_error(way, [20.005257, 7.048587]), 1e-6, "place by hand, m")
+    assert run["omega_z"][-1] == 0 and run["friction_mode"][-1] == 0
+
+
+# ---- the reference ----
+
+STEER, LEAN = (0.5, 0.8, -0.6, 0.3), (-0.3, 0.9, -0.4, -0.2)
+PUSH = {"F_X": (3.0, 2.0), "F_Y": (-20.0, 30.0), "F_Z": (-40.0, 15.0), "M_1": (1.0, -2.0), "M_2": (0.3, 1.0)}
+PUSH |= {"M_3": (-9.0, 4.0)}
+BRAKED = PUSH | {"M_brake": (2.0, 1.0)}
+ROUGH = {**GENERAL, "theta_start": 1.3, "psi_start": 0.4, "phi_start": 0.2, "phi_dot_start": -8.0}
+SLIPPERY = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 3.0, "slip_y_start": -2.0}
+SURFACES: dict[str, tuple[dict[str, float], dict]] = {
+    "rolls": (ROUGH, PUSH),
+    "rubs": (ROUGH | {"s": 0.02}, BRAKED),
+    "on a slope": (ROUGH | {"slope": 0.2, "slope_direction": 1.1}, PUSH),
+    "slides": (ROUGH | {"s": 0.02} | SLIPPERY, BRAKED),
+}
+CONSTANTS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
+
+
+def carried(start: dict[str, float]) -> Carried:
+    wheel = Wheel(**{name: start[name] for name in CONSTANTS if name in start})
+    angles = {name: start[f"{name}_start"] for name in ("psi", "theta", "phi", "phi_dot") if f"{name}_start" in start}
+    slip = (start.get("slip_x_start", 0.0), start.get("slip_y_start", 0.0))
+    road = (start.get("slope", 0.0), start.get("slope_direction", 0.0))
+    return Carried(wheel, **angles, mu_max=start.get("mu_max", np.inf), mu_slide=start.get("mu_slide", 0.0), slip=slip,
+                   road=road)  # fmt: skip
+
+
+@formulations
+@pytest.mark.parametrize("surface", SURFACES)
+def test_under_cubic_rates_it_moves_as_a_rotation_matrix_in_fixed_axes(
+    library: Library, surface: str, formulation: int
+) -> None:
+    start, loads = SURFACES[surface]
+    times, pieces = np.linspace(0, 1, 6), [Piece(0.0, 1.0, STEER, LEAN, loads)]
+    want = carried(start).run(pieces, times)
+
+    def errors(**change: float) -> dict[str, float]:
+        run = driven(library, pieces, times, **{**start, **change}, formulation=formulation)
+        return {name: absolute_error(run[name], want[name]) for name in READ}
+
+    within(errors(), 1e-9, "apart, SI")
+    beyond(max(errors(J_z=1.8002).values()), 1e-5, "apart with another J_z, SI")
+
+
+@formulations
+def test_it_slides_out_grips_and_stands_as_the_reference_does(library: Library, formulation: int) -> None:
+    start = {**GENERAL, "s": 0.02, "theta_start": 1.5, "phi_dot_start": -28.0, "mu_max": 0.3, "mu_slide": 0.25}
+    turn = {"M_brake": (0.0,)}
+    pieces = [Piece(0.0, 0.8, (0.0, 0.5), (0.0, 0.2), turn), Piece(0.8, 2.0, (0.4, -0.4), (0.16, -0.15), turn)]
+    times = [0.0, 0.5, 0.7, 0.9, 1.5, 2.0]
+    reference = carried(start)
+    want = reference.run(pieces, times)
+    assert [name for _, name in reference.transitions] == ["grip", "slip"]
+    run = driven(library, pieces, times, **start, formulation=formulation)
+    within({name: absolute_error(run[name], want[name]) for name in READ}, 2e-7, "apart, SI")  # it starts with a slip
+    slide, end = (t for t, _ in reference.transitions)
+    assert run["contact_mode"].tolist() == [int(slide < t < end) for t in times]
+
+
+# ---- jumps ----
+
+RISES = {**GENERAL, "theta_start": 1.2, "phi_dot_start": -8.0}
+JUMPS: dict[str, tuple[dict[str, float], tuple[float, float], dict[str, float]]] = {
+    "rolls": (RISES, (1.5, 0.7), {}),
+    "pressed": (RISES | {"s": 0.03}, (1.5, 1.7), {}),
+    "relieved": (RISES | {"s": 0.03}, (-1.5, -0.7), {}),
+    "friction stops it": (RISES | {"s": 0.03, "phi_dot_start": -0.001}, (0.0, 2.0), {}),
+    "held": (RISES | {"s": 0.03, "phi_dot_start": 0.0}, (0.1, 2.0), {}),
+    "released by the brake": (RISES | {"phi_dot_start": 0.0}, (3.0, 2.0), {"M_brake": 30.0}),
+    "through zero": (RISES | {"s": 0.03, "phi_dot_start": 0.02}, (-3.0, 2.0), {}),
+    "slides and steers": (RISES | {"s": 0.03} | SLIPPERY, (-1.5, 0.0), {}),
+    "slides and leans": (RISES | {"s": 0.03} | SLIPPERY, (-1.5, 1.5), {}),
+    "slides, little slip": (
+        RISES | {"s": 0.03} | SLIPPERY | {"slip_x_start": 0.01, "slip_y_start": 0.02},
+        (1.0, -1.7),
+        {},
+    ),
+    "regularized": (RISES | {"s": 0.03, "friction_law": 2, "omega_s": 0.5, "phi_dot_start": -0.3}, (0.5, 1.7), {}),
+}
+AFTER = 2e-3  # s
+
+
+def after_jump(library: Library, jump: str, formulation: int, ramp: float) -> dict[str, float]:
+    """State a little later, reached through a ramp of this duration, s; 0: a jump."""
+    start, (psi_dot, theta_dot), loads = JUMPS[jump]
+    brake = {name: (value,) for name, value in loads.items()}
+    first = [Piece(0.0, 1e-3, (0.0,), (0.0,), brake)]
+    if ramp:
+        first += [Piece(1e-3, 1e-3 + ramp, (0.0, psi_dot / ramp), (0.0, theta_dot / ramp), brake)]
+    last = Piece(1e-3 + ramp, AFTER, (psi_dot,), (theta_dot,), brake)
+    run = driven(library, [*first, last], [0.0, AFTER], **start, formulation=formulation, keep_contact=True)
+    return {
+        name: float(run[name][-1]) for name in ("omega_z", "v_x", "v_y", "slip_x", "slip_y", "psi_dot", "theta_dot")
+    }
+
+
+@formulations
+@pytest.mark.parametrize("jump", JUMPS)
+def test_a_jump_of_the_rates_is_the_limit_of_ever_steeper_ramps(library: Library, jump: str, formulation: int) -> None:
+    """Their errors fall with their duration, to what the solver leaves. A ramp that relieves the ground is looked at as
+    if it went on pressing: in the tests of the reference."""
+    start, (_, theta_dot), _ = JUMPS[jump]
+    want = after_jump(library, jump, formulation, 0.0)
+    if theta_dot < 0:
+        pieces = [Piece(0.0, 1e-3, (0.0,), (0.0,))]
+        pieces += [Piece(1e-3, 1e-3 + 1e-7, (0.0, JUMPS[jump][1][0] / 1e-7), (0.0, theta_dot / 1e-7))]
+        pieces += [Piece(1e-3 + 1e-7, AFTER, (JUMPS[jump][1][0],), (theta_dot,))]
+        found = carried(start).run(pieces, [0.0, AFTER])
+        within({name: abs(found[name][-1] - value) for name, value in want.items()}, 2e-5, "apart, SI")
+        return
+
+    def error(ramp: float) -> float:
+        found = after_jump(library, jump, formulation, ramp)
+        return max(abs(found[name] - value) for name, value in want.items())
+
+    errors = [error(ramp) for ramp in (1e-4, 1e-5, 1e-6)]
+    within(errors[-1], 1e-5, "rates and speeds apart after the shortest ramp, SI")
+    within(max(errors[1] / errors[0], errors[2] / errors[1]), 0.2, "errors of ten times shorter ramps")
+
+
+def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
+    assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
+    start, (_, theta_dot), _ = JUMPS["friction stops it"]
+    lift = M * R_0 * cos(start["theta_start"]) * theta_dot  # N s
+    whole = start["s"] * lift / (J_Z + M * (R_0 + TUBE * sin(start["theta_start"])) ** 2)
+    beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
+
+
+@pytest.mark.parametrize("order", [0, 1])
+def test_a_course_in_steps_comes_near_to_the_whole_with_its_order(library: Library, order: int) -> None:
+    """Held at the rate that leads to the heading asked for next, or with its first derivative."""
+    start = {**ROUGH, "s": 0.02}
+    whole = driven(library, [Piece(0.0, 1.0, STEER, LEAN, BRAKED)], [0.0, 1.0], **start)
+
+    def rate(row: Sequence[float], t: float) -> float:
+        return float(np.polynomial.polynomial.polyval(t, row))
+
+    def piece(t: float, h: float) -> Piece:
+        loads = {name: shifted(row, t)[: 1 + order] for name, row in BRAKED.items()}
+        if order:
+            return Piece(t, t + h, shifted(STEER, t)[:2], shifted(LEAN, t)[:2], loads)
+        angles = [np.polynomial.polynomial.polyint(row) for row in (STEER, LEAN)]
+        psi, theta = ((rate(row, t + h) - rate(row, t)) / h for row in angles)
+        return Piece(t, t + h, (psi,), (theta,), loads)
+
+    def errors(count: int) -> list[float]:
+        h = 1 / count
+        run = driven(library, [piece(k * h, h) for k in range(count)], [0.0, 1.0], **start)
+        return [abs(run[name][-1] - whole[name][-1]) for name in ("psi", "omega_z", "X_O", "Y_O")]
+
+    coarse, fine = errors(100), errors(200)
+    orders = [np.log2(a / b) for a, b in zip(coarse, fine, strict=True) if b > 1e-11]
+    within(max(abs(found - (1 + order)) for found in orders), 0.25, f"order less {1 + order}")
+    within(max(fine), 0.05 if order == 0 else 1e-4, "apart at 200 steps, SI")
+    assert order or fine[0] < 1e-11  # the heading is met exactly
+
+
+# ---- springs, power, turns ----
+
+
+def sprung(library: Library, stiffness: float) -> np.ndarray:
+    """The free wheel, held by damped springs to a heading and a tilt that move, after 1 s."""
+    wheel = exchange(library, **{**UPRIGHT, "theta_start": CAMBER, "phi_dot_start": -10.0})
+    index = {name: k for k, name in enumerate(STATES)}
+    damping = 2 * sqrt(stiffness)
+
+    def rate(t: float, x: np.ndarray) -> np.ndarray:
+        psi, theta = 0.2 * t**3, CAMBER + 0.1 * t**3
+        lean = stiffness * (theta - x[index["theta"]]) + damping * (0.3 * t**2 - x[index["theta_dot"]])
+        yaw = stiffness * (psi - x[index["psi"]]) + damping * (0.6 * t**2 - x[index["psi_dot"]])
+        assert wheel.set(M_1=lean, M_2=yaw) == OK
+        wheel.place(t, x)
+        return wheel.derivatives()
+
+    done = solve_ivp(rate, (0, 1), wheel.x(), "LSODA", rtol=1e-9, atol=1e-12)
+    x = done.y[:, -1]
+    return np.array([x[index[name]] for name in ("X_O", "Y_O", "psi", "theta", "omega_z")])
+
+
+def test_springs_that_steer_a_free_wheel_lead_to_it_as_they_stiffen(library: Library) -> None:
+    run = driven(
+        library, [Piece(0.0, 1.0, (0, 0, 0.6), (0, 0, 0.3))], [0.0, 1.0], theta_start=CAMBER, phi_dot_start=-10.0
+    )
+    want = np.array([run[name][-1] for name in ("X_O", "Y_O", "psi", "theta", "omega_z")])
+    errors = [float(np.abs(sprung(library, stiffness) - want).max()) for stiffness in (1e4, 1e5, 1e6)]
+    within(abs(np.log10(errors[1] / errors[2]) - 1), 0.1, "order in the compliance less 1")
+    within(errors[-1], 1e-3, "apart at 1e6 N m/rad, SI")
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_the_power_of_carrier_loads_slip_and_friction_changes_its_energy(library: Library, surface: str) -> None:
+    start, loads = SURFACES[surface]
+    times = np.linspace(0, 0.5, 501)
+    run = driven(library, [Piece(0.0, 0.5, STEER, LEAN, loads)], times, **start)
+    force = {name: a + b * times for name, (a, b) in loads.items()}
+    omega_2 = run["psi_dot"] * np.sin(run["theta"])
+
+    def error(judged: float) -> float:
+        power = force["F_X"] * run["X_O_dot"] + force["F_Y"] * run["Y_O_dot"] + force["F_Z"] * run["Z_O_dot"]
+        power += force["M_1"] * run["theta_dot"] + force["M_2"] * omega_2 + force["M_3"] * run["omega_z"]
+        power += run["tau"] * run["omega_z"] + run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"]
+        power += judged * (run["M_guide_1"] * run["theta_dot"] + run["M_guide_2"] * omega_2)
+        return abs(float(simpson(power, x=times)) - (run["E"][-1] - run["E"][0]))
+
+    within(error(1.0), 1e-8, "energy off the work, J")
+    beyond(error(0.999), 1e-4, "energy off the work with 0.1 % less of the carrier's, J")
+
+
+@formulations
+def test_after_many_turns_the_path_has_all_its_digits(library: Library, formulation: int) -> None:
+    """A thousand circles, also from a heading of a million turns."""
+    turn = 2 * pi
+    start = {**ROLLS, "psi_start": 2e6 * pi + 0.3, "formulation": formulation}
+    run = driven(library, [held(turn, end=1000.25)], [*np.arange(0.0, 1001.0, 20.0), 1000.25], 1e-10, **start)
+    heading = start["psi_start"] % (2 * pi)
+    radius = V / turn
+    want = [radius * (sin(heading + pi / 2) - sin(heading)), radius * (cos(heading) - cos(heading + pi / 2))]
+    within(absolute_error([run["X_O"][-2], run["Y_O"][-2]], 0.0), 1e-6, "place after whole circles, m")
+    within(absolute_error([run["X_O"][-1], run["Y_O"][-1]], want), 1e-6, "place a quarter on, m")
+    within(absolute_error(run["omega_z"], -V / R), 1e-10, "spin, rad/s")
