@@ -5,9 +5,13 @@ if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/pyth
 endif()
 find_package(Python3 QUIET COMPONENTS Interpreter)
 
-set(packages ${Python3_SITELIB} ${Python3_SITEARCH})
-list(TRANSFORM packages APPEND /fmpy/c-code)
-find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${packages} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
+# CMake would ask it for this folder with the current folder's modules in front.
+execute_process(
+  COMMAND ${Python3_EXECUTABLE} -I -c "import sysconfig; print(sysconfig.get_path('purelib'))"
+  OUTPUT_VARIABLE packages
+  OUTPUT_STRIP_TRAILING_WHITESPACE
+)
+find_path(FMI2_INCLUDE_DIR fmi2Functions.h HINTS ${packages}/fmpy/c-code NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT FMI2_INCLUDE_DIR)
   message(
     FATAL_ERROR
