@@ -258,7 +258,7 @@ function setUpGrip(live) {
     const needed = Math.hypot(now('lambda_1'), now('lambda_2')) / now('lambda_3');
     host.hidden = !(needed >= 0);
     if (host.hidden) return;
-    const [along, across] = ['slip_x', 'slip_y'].map((name) => now(name).toFixed(2).replace('-', '−'));
+    const [along, across] = ['slip_x', 'slip_y'].map((name) => fixed(now(name), 2));
     const slip = slipOf(table, live.instant()).toFixed(2);
     host.dataset.state = live.slides ? 'slides' : 'rolls';
     write(
@@ -267,6 +267,9 @@ function setUpGrip(live) {
             `Rolling needs μ = ${needed.toFixed(3)} now${mu_max > 0 ? `, of μ_max = ${mu_max}` : ''}.`);
   };
 }
+
+/** A number with the sign of mathematics, none of a zero. */
+const fixed = (value, digits) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');
 
 const TERMS = [
   ['weight', 'weight', '−N r_0 cos θ'],
@@ -280,7 +283,7 @@ function tenths(values) {
   const [sum, ...terms] = values.map((value) => Math.round(10 * value)).reverse();
   const largest = terms.reduce((best, value, i) => (Math.abs(value) > Math.abs(terms[best]) ? i : best), 0);
   terms[largest] += sum - terms.reduce((total, value) => total + value, 0);
-  return [...terms.reverse(), sum].map((value) => (value / 10).toFixed(1).replace(/^-(0\.0)$/, '$1').replace('-', '−'));
+  return [...terms.reverse(), sum].map((value) => fixed(value / 10, 1));
 }
 
 /** The moments about e1 as bars beside the picture of what rights the wheel: to the right those that right it. */
