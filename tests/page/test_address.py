@@ -111,6 +111,8 @@ def test_a_wrong_address_gives_the_first_scene_and_says_why(live, text, sentence
 
 @pytest.mark.parametrize("word", ["true", "1"])
 def test_a_wheel_carrier_is_written_true_and_read_either_way(live, word):
-    follow(live, f"guided={word}&theta=90deg")
-    assert np.ptp(column(live, "theta")) == 0 and live.evaluate("page.live.value('guided')") == 1
+    start(live)
+    live.evaluate("(word) => { location.hash = `guided=${word}&theta=90deg`; }", word)
+    live.wait_for_function("page.live.value('guided') === 1")
+    assert np.ptp(column(live, "theta")) == 0
     assert "guided=true" in live.evaluate(LINK)

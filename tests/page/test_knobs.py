@@ -57,10 +57,55 @@ def test_on_its_carrier_a_wheel_keeps_heading_and_tilt(live):
     live.locator("#guided").check()
     live.evaluate("page.live.frame()")
     assert np.ptp(column(live, "theta")) == 0 and np.ptp(column(live, "psi")) == 0
-    assert live.locator("#live [name=psi_dot_start]").is_disabled() and live.locator("#critical").is_hidden()
+    assert live.locator("#live [name=psi_dot_start]").is_hidden() and live.locator("#critical").is_hidden()
     live.locator("#guided").uncheck()
     live.evaluate("page.live.frame()")
     beyond(np.ptp(column(live, "theta")), 0.1, "tilt without the carrier, range in rad")
+
+
+GUIDE = """() => {
+  const {guide, guideName, look} = page.stage.models[0];
+  const tip = guide.up.clone().set(0, 0, 1).applyQuaternion(guide.quaternion).toArray();
+  return [look.held, guide.visible && guideName.visible, tip];
+}"""
+SYMBOLS = "page.plots.all.filter(({figure}) => !figure.hidden).map(({kind}) => kind.symbol)"
+
+
+def test_a_steered_wheel_turns_in_its_fork_whose_moment_is_drawn(live):
+    """The paper's wheel at 10 m/s, turned at 0.5 rad/s: M_guide_1 = (J_z + m R^2) omega_z psi_dot."""
+    start(live, guided=1, theta_start=np.pi / 2, phi_dot_start=-10 / 0.35)
+    live.evaluate("page.switches.flip('force', true)")
+    assert live.evaluate("page.pose() ?? " + f"({GUIDE})()")[:2] == [True, False]  # nothing to hold yet
+    live.evaluate("page.player.seek(1); page.live.frame()")
+    steer = live.locator("#live [name=psi_dot_guide_number]")
+    steer.fill("0.5")
+    steer.press("Enter")
+    live.evaluate("page.live.frame(); page.player.seek(2)")
+    held, drawn, tip = live.evaluate("page.pose() ?? " + f"({GUIDE})()")
+    moment = (1.8 + 20 * 0.35**2) * (-10 / 0.35) * 0.5
+    assert column(live, "M_guide_1")[200] == pytest.approx(moment) == pytest.approx(-60.714, abs=1e-3)
+    assert held and drawn and tip == pytest.approx([-1, 0, 0], abs=1e-6)
+    assert np.ptp(column(live, "psi")) == pytest.approx(0.5 * 9) and column(live, "psi")[100] == np.pi / 2
+    symbols = live.evaluate(SYMBOLS)
+    assert "M_guide e_1, ┄ e_2" in symbols and "v, ┄ −R ω_z" in symbols and "ω_z" not in symbols
+    live.locator("#guided").uncheck()
+    live.evaluate("page.live.frame(); page.player.seek(2)")
+    assert live.evaluate("page.live.trouble") is None and live.evaluate("page.live.plan.changes") == []
+    assert steer.is_hidden() and "ω_z" in live.evaluate(SYMBOLS)
+    assert live.evaluate("page.pose() ?? " + f"({GUIDE})()")[:2] == [False, False]
+
+
+def test_where_a_wheel_slides_upright_one_diagram_has_its_speed_and_that_of_rolling(live):
+    start(live, theta_start=np.pi / 2, phi_dot_start=10.0, slip_x_start=5.5, mu_max=0.35, mu_slide=0.3)
+    lines = live.evaluate("page.plots.curves.find(({kind}) => kind.symbol.startsWith('v')).lines[0].points")
+    _, speed, rolling = np.array(lines).T
+    slip = column(live, "slip_x")
+    upright = column(live, "time") < 2  # then it tips
+    within(np.abs(speed - rolling - slip)[upright].max(), 1e-12, "v less the speed of rolling off the slip, m/s")
+    within(
+        np.abs(rolling + 0.35 * column(live, "omega_z"))[upright].max(), 1e-9, "speed of rolling off -R omega_z, m/s"
+    )
+    assert slip[0] == 5.5 and slip[np.argmin(abs(column(live, "time") - 2))] == 0
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,9 @@ const curve = (symbol, unit, digits, columns, what, values, more) => kind(
     symbol, ['s', unit], ['time', ...columns], `${what} over time. Click or drag to go there`,
     ([t, ...all], wheel) => [t, ...values(all, wheel)], {digits, ...more});
 const guided = ({parameters}) => Boolean(parameters.guided);
-const upright = ({table}) => table.columns.theta.every((theta) => Math.abs(theta - Math.PI / 2) < 1e-3);
+/** Whether a wheel is upright until its first slide ends. */
+const upright = ({table: {columns: {time, theta}}, phases: {slides}}) =>
+    time.every((t, i) => t > slides[0][1] || Math.abs(theta[i] - Math.PI / 2) < 1e-3);
 /** Whether the speed of the centre and that of rolling are the subject: of a wheel in its plane. */
 const brakes = (wheel) => guided(wheel) || (wheel.phases.slides.length > 0 && upright(wheel));
 const acts =

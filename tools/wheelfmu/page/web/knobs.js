@@ -57,12 +57,15 @@ export const WHEEL = [
   knob('J_x', 'J_x', 'kg m²', '= J_y', inertias(0.02, 1)),
   knob('J_z', 'J_z', 'kg m²', 'axle', inertias(0.04, 1.2)),
 ];
-/** These act from the present on. */
+/** These act from the present on; those of the wheel carrier on a guided wheel alone. */
 export const NOW = [
   knob('s', 's', 'm', 'friction', ({r_0, r}) => upTo(roundUp(0.28 * (r_0 + r)))),
   knob('M_3', 'M₃', 'N m', 'torque', (wheel) => both(roundUp(8 * strength(wheel)))),
   knob('M_brake', 'M_b', 'N m', 'brake', (wheel) => upTo(roundUp(8 * strength(wheel)))),
+  knob('psi_dot_guide', 'ψ̇', 'rad/s', 'steering', () => both(1)),
+  knob('theta_dot_guide', 'θ̇', 'rad/s', 'leaning', () => both(1)),
 ];
+export const STEERING = ['psi_dot_guide', 'theta_dot_guide'];
 /** Buttons that act as long as they are held: text, variable, value in parts of the torque from the spin, tooltip. */
 export const HELD = [
   ['◀ push back', 'M_3', (spin) => -(spin || -1), 'Torque about the axle against the rolling direction'],

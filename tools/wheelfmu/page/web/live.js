@@ -3,7 +3,7 @@
 import {derive, EMPTY, Link, sameMotions} from '#address';
 import {variables} from '#dom';
 import {STEP} from '#fmu';
-import {limitsOf} from '#knobs';
+import {limitsOf, STEERING} from '#knobs';
 import {MOMENTS, nutation} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
@@ -129,7 +129,11 @@ export class LiveWheel {
     const {plan} = this;
     plan.values[name] = value;
     if (name === 'J_x') plan.values.J_y = value;
-    if (name === 'guided') Object.assign(plan.values, {psi_dot_start: 0, theta_dot_start: 0});  // the axle rests
+    if (name === 'guided') {  // the axle rests, and a free wheel is not steered
+      Object.assign(plan.values, {psi_dot_start: 0, theta_dot_start: 0});
+      for (const rate of STEERING) delete plan.values[rate];
+      plan.changes = plan.changes.filter((change) => !STEERING.includes(change.name));
+    }
     if (MOMENTS.includes(name)) plan.body = null;
     derive(plan);
     this.change('fitted');

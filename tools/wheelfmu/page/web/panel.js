@@ -3,7 +3,7 @@
 import {typed} from '#address';
 import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
 import {setUpFates} from '#fates';
-import {GRIP, HELD, NOW, shownLimits, START, torqueOf, WHEEL} from '#knobs';
+import {GRIP, HELD, NOW, shownLimits, START, STEERING, torqueOf, WHEEL} from '#knobs';
 import {balance, bodies, criticalSpin, doubtOf} from '#mechanics';
 import {scenes} from '#scenes';
 import {slipOf, tipsByRounding} from '#table';
@@ -217,13 +217,16 @@ function setUpReady(live, wheels) {
   };
 }
 
-/** The switch of the wheel carrier, on which the wheel does not turn about the vertical. */
+/** The switch of the wheel carrier, which turns heading and tilt at the rates of two sliders instead of the start's. */
 function setUpCarrier(live) {
   const box = $('#guided');
+  const rowOf = (name) => $(`#live [name=${name}]`).parentElement;
+  const [precession, ...steering] = ['psi_dot_start', ...STEERING].map(rowOf);
   box.onchange = () => live.setStart('guided', Number(box.checked));
   return () => {
     box.checked = live.value('guided') > 0;
-    for (const part of document.querySelectorAll('#start [name^=psi_dot_start]')) part.disabled = box.checked;
+    for (const part of steering) part.hidden = !box.checked;
+    precession.hidden = box.checked;
   };
 }
 

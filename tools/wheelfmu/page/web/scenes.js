@@ -171,6 +171,8 @@ export function scenes(parameters, steps) {
   const [, , , critical, free, friction, , driven, locked, thrown] = steps.map(({state}) => state);
   const limit = `Upright rolling is stable above ${criticalSpin(parameters).toFixed(2)} rad/s; this wheel is 10 %`;
   const wet = read('mu_max=0.45&mu_slide=0.4&show=follow+path+force').state;
+  const steered =
+      read('guided=true&theta=90deg&phi_dot=-20&psi_dot_guide=1:0.8,4:-0.8,8:0&show=follow+path+force').state;
   const disc = read('body=disc&r=0&theta=20deg&psi_dot=9&phi_dot=-9').state;
   return [
     ['Paper, no friction', free.plan],
@@ -187,6 +189,10 @@ export function scenes(parameters, steps) {
     ],
     ['Backspin', thrown.plan, 'Thrown forward at 2 m/s, spinning backward: it slides, rolls and comes back.'],
     ['Locked', locked.plan, 'In a fork at 7 m/s; a brake locks it at 0.5 s, and it slides until it stops.'],
+    [
+      'Steered', steered.plan,
+      'On its carrier at 7 m/s, steered left, then right: the side force m v ψ̇ bends its path, the moment (J_z + m R²) ω_z ψ̇ of the carrier keeps it upright.'
+    ],
     ['Driven', driven.plan, 'A motor pushes with M₃ = −4 N m from 1 s to 3 s, the brake with 4 N m from 6 s to 7.5 s.'],
   ].map(([label, plan, about]) => ({label, plan, about}));
 }
