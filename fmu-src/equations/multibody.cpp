@@ -149,7 +149,7 @@ Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
   return K;
 }
 
-// A hub carrier turns psi and theta: these two constraints stand in the place of the moments across the axle, where
+// A wheel carrier turns psi and theta: these two constraints stand in the place of the moments across the axle, where
 // alone their multipliers act.
 void guide(const WheelLoad& load, Matrix9& K, Vector9& column) {
   const Vector2 turn(load.turn);

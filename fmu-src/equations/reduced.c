@@ -106,7 +106,7 @@ static inline Accelerations move(const System* s, AxleLaw law) {
   return solve(s, &law);
 }
 
-/* On its hub carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
+/* On its wheel carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
 static inline Accelerations move_guided(const WheelScene* scene, const Carrier* c, const Drift* d, AxleLaw law) {
   const WheelParameters* w = &scene->wheel;
   double omega_1_dot = scene->load.turn[1], omega_2_dot = guided_rate(c, scene->load.turn[0]);

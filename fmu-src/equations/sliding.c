@@ -10,7 +10,7 @@ typedef struct Action {
   Moment M;        /* N m, external less gyroscopic moment */
   double N_rest;   /* N, normal force for omega_1_dot = 0 */
   double a_x, a_y; /* m/s2, rate of the slip without friction and omega_dot */
-  double turn[2];  /* rad/s2, omega_1_dot and omega_2_dot that a hub carrier gives */
+  double turn[2];  /* rad/s2, omega_1_dot and omega_2_dot that a wheel carrier gives */
   double brake;    /* N m */
 } Action;
 
@@ -26,7 +26,7 @@ typedef struct Body {
   double mu, s;                                /* 1 and m, coefficients of the ground's friction; zero where it pulls */
   double kappa;                                /* tau = -(s N + brake) kappa */
   int held;                                    /* omega_3 is held at zero */
-  int guided;                                  /* no moment turns the wheel across its axle: a hub carrier does */
+  int guided;                                  /* no moment turns the wheel across its axle: a wheel carrier does */
 } Body;
 
 /* What follows. */
@@ -35,7 +35,7 @@ typedef struct Motion {
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
 } Motion;
 
-/* Linear in the action and in the horizontal force f of the ground. Unless a hub carrier gives omega_1 and omega_2:
+/* Linear in the action and in the horizontal force f of the ground. Unless a wheel carrier gives omega_1 and omega_2:
  *   [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ]
  *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x          ]
  *   J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */

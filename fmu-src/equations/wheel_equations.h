@@ -6,7 +6,7 @@
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
- * Each takes a wheel on its hub carrier too, which keeps the direction of the axle (WheelScene.guided).
+ * Each takes a wheel on its carrier too, which keeps the direction of the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
@@ -46,7 +46,7 @@ typedef struct WheelLoad {
   double F[3];    /* N at O, fixed axes X, Y, Z */
   double M[3];    /* N m on the wheel, carrier axes e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
   double brake;   /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
-  double turn[2]; /* rad/s2, psi_ddot and theta_ddot, which the hub carrier gives a guided wheel */
+  double turn[2]; /* rad/s2, psi_ddot and theta_ddot, which the wheel carrier gives a guided wheel */
 } WheelLoad;
 
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
@@ -88,7 +88,7 @@ typedef struct WheelScene {
   WheelGround ground;
   WheelContactMode contact;
   double mu_slide; /* >= 0, coefficient of sliding friction: the ground's horizontal force is mu_slide N */
-  /* Not 0: on a hub carrier psi_dot and theta_dot are given: their rates are `load.turn`, whatever acts: the limit of
+  /* Not 0: on a wheel carrier psi_dot and theta_dot are given: their rates are `load.turn`, whatever acts: the limit of
    * infinite moments of inertia across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
   int guided;
 } WheelScene;
@@ -227,7 +227,7 @@ WheelContact wheel_contact(const WheelParameters* wheel, const WheelKinematics* 
  * somebody who looks along e1 (lambda_y). */
 void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3], double force[2]);
 
-/* The moment of the hub carrier on a guided wheel, N m, along e1 and e2 (out). */
+/* The moment of the wheel carrier on a guided wheel, N m, along e1 and e2 (out). */
 void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, const WheelDynamics* dynamics,
                         double out[2]);
 

@@ -1,4 +1,4 @@
-// The free wheel unfolded: without friction, brake and load, and with J_x = J_y or on a hub carrier, half a nutation
+// The free wheel unfolded: without friction, brake and load, and with J_x = J_y or on a wheel carrier, half a nutation
 // holds the whole motion.
 //
 // Along the motion omega_2 and omega_3 are functions of theta alone (Chaplygin), so theta swings to and fro between two

@@ -1,5 +1,5 @@
-// Jumps of the hub carrier's rates: y changes by f(y, turn) - f(y, 0), where `turn` holds the jumps in the place of the
-// carrier's accelerations, in which f is linear.
+// Jumps of the wheel carrier's rates: y changes by f(y, turn) - f(y, 0), where `turn` holds the jumps in the place of
+// the carrier's accelerations, in which f is linear.
 #include "guide.hpp"
 
 #include <algorithm>

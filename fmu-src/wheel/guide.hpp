@@ -1,4 +1,4 @@
-// Jumps of the rates at which a hub carrier turns the wheel: an input that is held begins with one.
+// Jumps of the rates at which a wheel carrier turns the wheel: an input that is held begins with one.
 #pragma once
 
 #include "run.hpp"

@@ -1,5 +1,5 @@
 // The nine inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
-// weight, the brake, and how the hub carrier of a guided wheel turns.
+// weight, the brake, and how the wheel carrier of a guided wheel turns.
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m],
 // the capacity of the dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `turn`. What the
@@ -26,7 +26,7 @@ WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
 struct Inputs {
   double origin = 0;  // s, own clock
   Polynomials c = {};
-  int count = guide_input;  // so many can act: all where a hub carrier can turn the wheel
+  int count = guide_input;  // so many can act: all where a wheel carrier can turn the wheel
   // What follows from the polynomials.
   bool loaded = false;   // some input is not zero
   bool braked = false;   // the brake is in use: its capacity or one of its derivatives is not zero

@@ -57,7 +57,7 @@ struct Setup {
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool guided;   // a hub carrier gives psi and theta
+  bool guided;   // a wheel carrier gives psi and theta
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
   double tolerance;                // relative, of the whole solution

@@ -37,7 +37,7 @@ double velocity(Reading& now, int axis) {
   return axis == 0 ? k.X_O_dot * cosine + k.Y_O_dot * sine : k.Y_O_dot * cosine - k.X_O_dot * sine;
 }
 
-// N m, the hub carrier's on the wheel: about e1 (0) or e2 (1).
+// N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1).
 double guide_moment(Reading& now, int axis) {
   double moment[2] = {};
   if (now.scene.guided) wheel_guide_moment(&now.scene, &now.kinematics(), &now.dynamics(), moment);

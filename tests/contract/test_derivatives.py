@@ -415,7 +415,7 @@ def test_the_moment_of_a_regularized_law_has_its_derivative_by_the_spin_at_every
 @pytest.mark.parametrize("slip", [1.0, 1e-3, 3e-4, 1e-6, 1e-9])
 @pytest.mark.parametrize("direction", [0.0, 0.9, 2.5])
 def test_the_force_of_a_slip_has_its_derivatives_at_every_speed(wheel, slip, direction):
-    """Upright on a hub carrier N = m g: the force is -mu N along the slip."""
+    """Upright on a wheel carrier N = m g: the force is -mu N along the slip."""
     x, y, force = np.cos(direction), np.sin(direction), 0.5 * 20 * 9.81
     start = {"guided": True, "theta_start": np.pi / 2, "mu_max": 0.5, "mu_slide": 0.5}
     w = wheel().initializing(slip_x_start=slip * x, slip_y_start=slip * y, **start)

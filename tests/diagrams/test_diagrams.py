@@ -151,7 +151,7 @@ def labels(draw: Callable, one: Scene) -> list[str]:
 
 
 def locked() -> Scene:
-    """On its hub carrier, locked at once; 8 m/s falls evenly, the spin four times as fast; it stands after 8 s."""
+    """On its wheel carrier, locked at once; 8 m/s falls evenly, the spin four times as fast; it stands after 8 s."""
     v, rolling = np.maximum(8 - TIME, 0), np.maximum(8 - 4 * TIME, 0)
     course = {"X_O_dot": v, "psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "psi_dot": 0}
     way = np.where(TIME < 8, 8 * TIME - TIME**2 / 2, 32)

@@ -84,7 +84,7 @@ def test_an_early_end_is_the_last_row(library: Library) -> None:
     ("spin", "free", "carried"), [(-2.0, 0.01, 0.01), (-20.0, 0.002, 0.005), (-60.0, 0.001, 0.002)]
 )
 def test_the_interval_of_the_rows_follows_the_fastest_period_of_the_start(spin, free, carried) -> None:
-    """Forty rows in the period of the nutation, 1.593 times as fast as the spin; of the spin on a hub carrier."""
+    """Forty rows in the period of the nutation, 1.593 times as fast as the spin; of the spin on a wheel carrier."""
     own = {name: v.preset for name, v in paper.SETTINGS.items()} | {"phi_dot_start": spin}
     assert (values.interval(own, 0.01), values.interval(own | {"guided": 1.0}, 0.01)) == (free, carried)
     fast = upright_stiffness(PAPER, 1e4) ** 0.5

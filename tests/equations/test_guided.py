@@ -1,4 +1,4 @@
-"""The equations on a hub carrier against the paper's system (24) with the carrier's two moments as unknowns.
+"""The equations on a wheel carrier against the paper's system (24) with the carrier's two moments as unknowns.
 
 Random wheels whose axle turns as it is told, under loads and each law; frames of wheel_equations.h.
 """

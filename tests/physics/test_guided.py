@@ -1,4 +1,4 @@
-"""A wheel on its hub carrier (`guided`): closed forms, springs and inertias that rise towards it, power, formulations.
+"""A wheel on its carrier (`guided`): closed forms, springs and inertias that rise towards it, power, formulations.
 
 Along e1, with rho = r_0 + r sin(theta) and I = J_z + m rho^2: v = -rho omega_z, I omega_z' = M_3 + tau - rho F_1;
 N = m g - F_Z. SI units.

@@ -1,4 +1,4 @@
-"""A hub carrier that steers and leans: closed forms, its own reference, what a jump of its rates does, springs, power.
+"""A wheel carrier that steers and leans: closed forms, its own reference, jumps of its rates, springs, power.
 
 R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta). SI units.
 """

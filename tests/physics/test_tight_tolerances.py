@@ -56,7 +56,7 @@ def test_random_wheels_with_friction_run_to_their_end_at_the_tightest_tolerances
 
 GUIDED = {"guided": True, "theta_start": pi / 2}
 DRIVEN = Schedule(((0.0, {}), (0.1, {"F_X": -26.0}), (0.2, {"F_X": -26.0, "M_3": 40.0})))
-BEGINS = {  # on a hub carrier: the motion amplifies no error
+BEGINS = {  # on a wheel carrier: the motion amplifies no error
     "driven": ({"mu_max": 0.17, "mu_slide": 0.17, "s": 0.004, "phi_dot_start": -6.0}, DRIVEN),
     "thrown": (
         {"mu_max": 0.458, "mu_slide": 0.458, "s": 0.0081, "phi_dot_start": 1.364}

@@ -193,7 +193,7 @@ def draw_forces(ax: Axes, scene: Scene) -> list[str]:
 
 
 def draw_carrier(ax: Axes, scene: Scene) -> list[str]:
-    """The moment of the hub carrier on the wheel, gyroscopic part included."""
+    """The moment of the wheel carrier on the wheel, gyroscopic part included."""
     ax.set_ylabel(r"moment of the carrier [N$\,$m]")
     marks, names = _time_axis(ax, scene), ("M_guide_1", "M_guide_2")
     return marks + _curves(ax, scene, {LETTER[name]: (scene[name], style.colour(name)) for name in names})

@@ -61,7 +61,7 @@ def free(scene: Scene) -> bool:
 
 
 def steered(scene: Scene) -> bool:
-    """Whether a hub carrier changes tilt or heading."""
+    """Whether a wheel carrier changes tilt or heading."""
     return scene.guided and not scene.straight
 
 
@@ -112,7 +112,7 @@ def pushes(scene: Scene) -> bool:
 
 
 def carries(scene: Scene) -> bool:
-    """Whether a hub carrier bears a moment."""
+    """Whether a wheel carrier bears a moment."""
     size = scene.value("m") * scene.value("g") * scene.value("r_0")
     return scene.guided and max(abs(scene[name]).max() for name in ("M_guide_1", "M_guide_2")) > 1e-6 * size
 
@@ -136,7 +136,7 @@ DRIVEN = (  # what a vehicle's engineer reads
     Panel("slip_ratio", "Slip ratio", 57.0, panels.draw_slip_ratio, brakes),
     Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, slides_across),
     Panel("forces", "Forces of the ground", 57.0, panels.draw_forces, pushes),
-    Panel("carrier", "Moment of the hub carrier", 57.0, panels.draw_carrier, carries),
+    Panel("carrier", "Moment of the wheel carrier", 57.0, panels.draw_carrier, carries),
     Panel("distance", "Distance along the heading", 57.0, panels.draw_distance, straight),
 )
 

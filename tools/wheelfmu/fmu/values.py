@@ -283,7 +283,7 @@ def scale(body: Mapping[str, float], kg: int = 0, m: int = 0, s: int = 0) -> flo
 
 
 def nutation(body: Mapping[str, float], spin: float) -> float:
-    """The rate in rad/s at which a wheel of this spin nods: that of fast upright rolling; 0 on a hub carrier."""
+    """The rate in rad/s at which a wheel of this spin nods: that of fast upright rolling; 0 on a wheel carrier."""
     m, r_0, r, J_x, J_y, J_z = (body[name] for name in ("m", "r_0", "r", *MOMENTS))
     J, R2 = min(J_x, J_y), (r_0 + r) ** 2
     free = not body.get("guided", 0.0)

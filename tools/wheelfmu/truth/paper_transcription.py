@@ -292,7 +292,7 @@ class Stabilised(Paper):
 
 
 class Carried(Paper):
-    """(24) of a wheel on its hub carrier, whose moments about e1 and e2 give psi_ddot and theta_ddot, `turn`: two
+    """(24) of a wheel on its carrier, whose moments about e1 and e2 give psi_ddot and theta_ddot, `turn`: two
     unknowns more. `slip`: one that slides, with coefficient and direction from X: its force stands in the place of two
     constraints."""
 

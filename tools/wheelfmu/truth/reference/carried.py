@@ -1,4 +1,4 @@
-"""Reference of a wheel on a hub carrier that steers and leans: its axle is a given function of time.
+"""Reference of a wheel on a carrier that steers and leans: its axle is a given function of time.
 
 Fixed axes throughout, attitude as a rotation matrix, all reactions unknown: the force of the ground and the carrier's
 moment across the axle. No Euler angle appears but in the course of the axle a, whose second derivative is an equation
