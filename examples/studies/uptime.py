@@ -2,7 +2,7 @@
 
 `./scripts/study uptime` runs it and draws it; `--publish` writes the figure into docs/figures.
 It counts as up until it leans by more than 30 degrees. The spin of an upright wheel falls by s m g / (J_z + m R^2) per
-second; dashed: the time at which it comes down to the limit of upright rolling.
+second; dashed: the time at which it comes down to the critical spin.
 """
 
 from pathlib import Path
@@ -14,7 +14,9 @@ from matplotlib.ticker import LogLocator
 from wheelfmu.diagrams import style
 from wheelfmu.fmu.values import scale
 from wheelfmu.studies import Study
-from wheelfmu.studies.drawing import rolling_inertia, upright_limit, wheel_of
+from wheelfmu.studies.drawing import critical_spin, wheel_of
+from wheelfmu.truth.closed_forms import rolling_inertia
+from wheelfmu.truth.reference import Wheel
 
 study = Study(
     grid={"phi_dot_start": [-3.0, -4.0, -6.0, -10.0], "s": np.linspace(0.0, 0.1, 401)},
@@ -37,10 +39,10 @@ def draw(small: xr.Dataset, stem: Path) -> Path:
     colours = (style.GREEN, style.ORANGE, style.BLUE, style.PURPLE)
     wheel, s = wheel_of(small), small["s"].values
     beside = (-5, 3, 0, 0)  # points, so that labels do not touch
-    slowing = s[1:] * wheel["m"] * wheel["g"] / rolling_inertia(**wheel)  # rad/s2, where s > 0
+    slowing = s[1:] * wheel["m"] * wheel["g"] / rolling_inertia(Wheel(**wheel))  # rad/s2, where s > 0
     for colour, apart, spin in zip(colours, beside, small["phi_dot_start"].values, strict=True):
         times = small["up_time"].sel(phi_dot_start=spin).values
-        ax.plot(s[1:], (-spin - upright_limit(wheel)) / slowing, color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
+        ax.plot(s[1:], (-spin - critical_spin(wheel)) / slowing, color=colour, linestyle=(0, (4, 2)), linewidth=0.8)
         ax.plot(s, times, color=colour, linewidth=1.4)
         text = {"textcoords": "offset points", "va": "center", "color": colour}
         ax.annotate(f"{-spin:.3g} rad/s", (s[-1], times[-1]), xytext=(5, apart), **text)
@@ -49,5 +51,5 @@ def draw(small: xr.Dataset, stem: Path) -> Path:
     ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.yaxis.set_major_formatter("{x:g}")
     ax.set_ylabel("time until it leans by 30° [s]")
-    ax.set_title("solid: the wheel; dashed: spin down at the limit of upright rolling", fontsize=8.5)
+    ax.set_title("solid: the wheel; dashed: spin down to the critical spin", fontsize=8.5)
     return style.save_png(fig, stem.with_suffix(".png"))

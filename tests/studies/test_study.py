@@ -19,9 +19,9 @@ from support.bounds import EPSILON, absolute_error, beyond, relative_error, with
 
 from wheelfmu.fmu import values
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.studies import Status, Study, StudyError, drawing
+from wheelfmu.studies import Status, Study, StudyError, drawing, options, pictures
 from wheelfmu.studies.__main__ import main, study_file
-from wheelfmu.studies.dataset import curves, in_degrees
+from wheelfmu.studies.dataset import curves, in_degrees, study_of
 from wheelfmu.studies.options import arguments_of, file_of
 from wheelfmu.studies.worker import Result, run_chunk
 
@@ -288,9 +288,64 @@ def test_the_critical_spin_that_is_drawn_is_the_bodys(name: str, conduct) -> Non
         content = study_file(file_of(name), body=body)
         few = {n: axis[:: max(1, len(axis) // 2)] for n, axis in content["study"].grid.items()}
         table = content["table"](conduct(replace(content["study"], grid=few)))
-        drawn.append(drawing.upright_limit(drawing.wheel_of(table)))
+        drawn.append(drawing.critical_spin(drawing.wheel_of(table)))
     m, r_0, r, g = 20.0, 0.3, 0.05, 9.81
     J_z, J_x = m * (r_0 + r) ** 2 / 2, m * ((r_0 + r) ** 2 / 4 + r**2 / 3)
     expected = np.sqrt(m * g * r_0 * J_x / (J_z * (J_z + m * (r_0 + r) ** 2)))
     within(relative_error(drawn[1], expected), 64 * EPSILON, "critical spin of the disc, relative")
     beyond(abs(drawn[0] - expected), 0.1, "critical spin of the paper's wheel beside it, rad/s")
+
+
+def test_where_the_least_normal_force_of_a_kept_contact_is_negative_the_wheel_lifts_off(alone) -> None:
+    """So its zero is the smooth boundary of the map of fates."""
+    grid = {"theta_start": np.radians([5, 10, 20, 30, 45, 60]), "phi_dot_start": [-15.0, -22.0, -30.0, -45.0]}
+    free = alone(Study(grid=grid, values={"s": 0.03}))
+    least = alone(Study(grid=grid, values={"s": 0.03, "keep_contact": 1.0}, measures={"N": "min(lambda_3)"}))
+    lifts = free["status"].values == Status.lifted_off
+    assert ((least["N"].values < 0) == lifts).all() and 0 < lifts.sum() < lifts.size
+
+
+PICTURES = {
+    "a curve": ({"theta_start": [1.2, 1.3, 1.4]}, ["initial θ [deg]"], 1),
+    "curves": ({"theta_start": [1.2, 1.3, 1.4], "s": [0.0, 0.01]}, ["initial θ [deg]"], 2),
+    "a map": ({"theta_start": np.linspace(1, 1.5, 7), "phi_dot_start": -np.linspace(0, 6, 7)}, ["initial θ [deg]"], 0),
+    "marginals": ({"m": [10.0, 20.0], "s": [0.0, 0.01], "r": [0.0, 0.05]}, ["m [kg]", "s [m]", "r [m]"], 1),
+}
+
+
+@pytest.mark.parametrize(("grid", "sides", "lines"), PICTURES.values(), ids=PICTURES)
+def test_a_study_of_options_is_drawn_by_the_number_of_names_that_vary(
+    grid, sides, lines, conduct, tmp_path, monkeypatch
+) -> None:
+    figures: list = []
+    monkeypatch.setattr(pictures.style, "save_png", lambda figure, path: figures.append(figure) or path)
+    pictures.draw(conduct(Study(grid=grid, measures={"lowest": "lowest"}, stop_time=1.0)), tmp_path / "a")
+    axes = [ax for ax in figures[0].axes if ax.get_label() != "<colorbar>"]
+    assert [ax.get_xlabel() for ax in axes] == sides
+    assert all(len([line for line in ax.lines if len(line.get_xdata()) > 1]) == lines for ax in axes)
+    legends = [text.get_text() for legend in figures[0].legends for text in legend.get_texts()]
+    assert legends == ["lies flat"] * (lines == 0)  # the wheels without spin
+
+
+def test_a_list_is_drawn_wheel_by_wheel_over_each_name_and_nothing_where_nothing_varies(conduct, tmp_path) -> None:
+    starts = {"theta_start": [1.2, 1.3, 1.4], "phi_dot_start": [-2.0, 0.0, -3.0]}
+    assert pictures.draw(conduct(Study(list=starts, stop_time=1.0)), tmp_path / "a").is_file()
+    assert pictures.draw(conduct(Study(grid={"s": [0.0]}, stop_time=1.0)), tmp_path / "b") is None
+
+
+def test_earlier_results_go_on_by_the_name_of_their_folder(
+    conduct, tmp_path, capsys, fmu_path, crew, monkeypatch
+) -> None:
+    """A grid, a list and a body; then none is run again. A name that is neither is refused as before."""
+    studies = [FATES, LISTED, Study(grid={"r": [0.05, 0.06], "m": [10.0, 20.0]}, body="torus", stop_time=0.1)]
+    for k, study in enumerate(studies):
+        place = tmp_path / "results" / "studies" / f"earlier_{k}.zarr"
+        results = conduct(study, place)
+        assert study_of(results) == study
+    monkeypatch.setattr(options, "ROOT", tmp_path)
+    for name in ("earlier_2", str(place)):
+        assert main([name, "--fmu", str(fmu_path), "--scheduler", crew.scheduler_address]) == 0
+        printed = capsys.readouterr()
+        assert "4 of 4 wheels are there already." in printed.err
+        assert printed.out.splitlines()[-1] == f"Wrote {place.with_suffix('.png')}"
+    assert main(["nowhere"]) == 2 and "There is no study nowhere" in capsys.readouterr().err

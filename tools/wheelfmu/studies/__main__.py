@@ -30,12 +30,20 @@ def study_file(path: Path, wheel: str | None = None, body: str | None = None) ->
 def conduct(arguments: argparse.Namespace) -> None:
     """Runs, exports, draws, and prints the outcome and where it is."""
     content = {"study": arguments.study, "name": "study"}
-    if isinstance(arguments.study, Path):
+    kept = isinstance(arguments.study, Path) and arguments.study.suffix == ".zarr"
+    if isinstance(arguments.study, Path) and not kept:
         content = study_file(arguments.study, arguments.wheel, arguments.body)
     from .checking import checked  # before a run: Dask's scheduler reloads this package in its own process
     from .compute import run
-    from .dataset import export, exported, summarize
+    from .dataset import export, exported, open_results, study_of, summarize
 
+    if kept:  # a folder of results, which goes on
+        arguments.out = str(arguments.study)
+        content = {"study": study_of(open_results(arguments.out)), "name": arguments.study.stem}
+    if "table" not in content:
+        from .pictures import draw
+
+        content["draw"] = draw
     stem = ROOT / "results" / "studies" / content["name"]
     arguments.out = out = arguments.out or f"{stem}.zarr"
     if "://" not in out:
@@ -48,7 +56,8 @@ def conduct(arguments: argparse.Namespace) -> None:
     if "draw" in content and not arguments.publish:
         written.append(Path(f"{stem}.png"))
     folder = [Path(out)] * ("://" not in out)
-    inputs = [arguments.fmu, *filter(None, [arguments.list]), *[arguments.study] * isinstance(arguments.study, Path)]
+    read = [arguments.study] * (isinstance(arguments.study, Path) and not kept)
+    inputs = [arguments.fmu, *filter(None, [arguments.list]), *read]
     before = exported(out)
     outputs.check([*folder, *written], inputs, lambda path: path.name in before, overwrite=arguments.overwrite)
     begin = time.perf_counter()
@@ -63,8 +72,10 @@ def conduct(arguments: argparse.Namespace) -> None:
     if "table" in content:  # an example's own table and figure
         table = content["table"](results)
         paths.append(export(table, Path(f"{stem}.nc")))
-        figure = ROOT / "docs" / "figures" / f"study_{stem.name}" if arguments.publish else stem
-        paths += [content["draw"](table, figure)] if "draw" in content else []
+        results = table
+    if "draw" in content:
+        figure = ROOT / "docs" / "figures" / f"study_{stem.name}" if arguments.publish and "table" in content else stem
+        paths += filter(None, [content["draw"](results, figure)])
     print("\n".join(f"Wrote {path}" for path in paths))
 
 

@@ -121,13 +121,20 @@ def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> 
     versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
     versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
     fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
-    return {"title": TITLE, "study": json.dumps(definition)} | fmu | versions
+    return {"title": TITLE, "study": json.dumps(definition), "varied": [*study.varied]} | fmu | versions
 
 
 def open_results(place: Path | str) -> xr.Dataset:
     """The results of a study, labelled; read when asked for."""
     results = xr.open_zarr(place, consolidated=False, chunks=None)
     return results[[*OWN, *sorted(results.data_vars.keys() - OWN.keys())]]
+
+
+def study_of(results: xr.Dataset) -> Study:
+    """The study whose results these are."""
+    columns = {name: results[name].values.tolist() for name in results.attrs["varied"]}
+    kind = "list" if POINT in results.sizes else "grid"
+    return Study(**json.loads(results.attrs["study"]), **{kind: columns})
 
 
 def in_degrees(results: xr.Dataset) -> xr.Dataset:

@@ -1,28 +1,36 @@
 """Shared by the examples' figures: two maps side by side, initial theta over initial spin."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm
 
 from wheelfmu.diagrams import style
 from wheelfmu.fmu.values import moments, scale
 from wheelfmu.studies import Status
+from wheelfmu.truth import closed_forms
+from wheelfmu.truth.reference import Wheel
 
 PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
 HEIGHT = 92.0  # mm, of a figure
-FATES = {Status.flat: style.INK, Status.lifted_off: style.VERMILLION, Status.grip: style.PURPLE}  # ends of a run
-WHEEL = {"m": 20.0, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_z": 1.8, "g": 9.81}  # SI; the FMU's defaults
+FATES = {  # ends of a run
+    Status.flat: (style.INK, "lies flat"),
+    Status.lifted_off: (style.VERMILLION, "lifts off"),
+    Status.grip: (style.PURPLE, "needs more grip"),
+    Status.jammed: (style.GREEN, "jams"),
+    Status.refused: (style.GREY, "refused"),
+    Status.failed: (style.GREY, "failed"),
+}
+LEAST = 0.004  # of a map: a smaller region has no label
+NARROW = 0.05  # of the frame: from here to a region's nearest edge its label is upright
 
 
-def rolling_inertia(m: float, r_0: float, r: float, J_z: float, **_: float) -> float:
-    """J_z + m R^2 [kg.m2], R = r_0 + r: upright rolling, about the contact."""
-    return J_z + m * (r_0 + r) ** 2
-
-
-def studied(table: xr.Dataset) -> dict[str, object]:
+def studied(table: xr.Dataset) -> dict[str, Any]:
     """The definition of the study whose results these are."""
     return json.loads(table.attrs["study"])
 
@@ -30,40 +38,74 @@ def studied(table: xr.Dataset) -> dict[str, object]:
 def wheel_of(table: xr.Dataset) -> dict[str, float]:
     """The study's wheel; of a body with the moments that follow from its mass and size."""
     study = studied(table)
-    wheel = WHEEL | study["values"]
+    wheel = {name: study["values"].get(name, value) for name, value in asdict(Wheel()).items()}
     return wheel | (moments(study["body"], *(wheel[name] for name in ("m", "r_0", "r"))) if study["body"] else {})
 
 
-def upright_limit(w: Mapping[str, float]) -> float:
-    """|omega_z| [rad/s] above which upright straight rolling is stable: (J_z + m R^2) J_z omega_z^2 = m g r_0 J_x."""
-    return float(np.sqrt(w["m"] * w["g"] * w["r_0"] * w["J_x"] / (w["J_z"] * rolling_inertia(**w))))
+def critical_spin(wheel: Mapping[str, float]) -> float:
+    """|omega_z| [rad/s] above which upright straight rolling is stable."""
+    return closed_forms.critical_spin(Wheel(**wheel))
 
 
-def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text: str, side: int = 1) -> tuple:
+def label_regions(ax: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, text: str) -> None:
+    """A word in the middle of a region of a map, which is also its widest place."""
+    if inside.mean() > LEAST:
+        shares = ax.transAxes.inverted().transform(ax.transData.transform(np.column_stack([x.ravel(), y.ravel()])))
+        found, rest = shares[inside.ravel()], np.concatenate([shares[~inside.ravel()], [[2, 2]]])
+        apart = np.hypot(*(found[:, None] - rest[None, :: max(1, len(rest) // 2000)]).transpose(2, 0, 1)).min(axis=1)
+        apart = np.minimum(apart, np.minimum(found, 1 - found).min(axis=1))
+        place = found[int(np.argmax(apart))]
+        look = {"color": "white", "ha": "center", "va": "center", "fontsize": 8, "linespacing": 0.9}
+        narrow = apart.max() < NARROW
+        if narrow:  # its wheels stand at the frame, and it ends half-way to the next ones
+            text, place = text, np.array([place[0] + (rest[:, 0].min() - place[0]) / 4, 0.5])
+        else:
+            text = text.replace(" ", "\n")
+        ax.text(float(place[0]), float(place[1]), text, rotation=90 * narrow, transform=ax.transAxes, **look)
+
+
+def two_maps(
+    small: xr.Dataset,
+    name: str,
+    tones: str,
+    levels: list[float],
+    text: str,
+    dress: Callable[[Axes], None],
+    side: int = 1,
+) -> tuple:
     """Maps of the variable `name`, for the free wheel and for the one with friction, and a scale; figure and axes.
 
-    Where a run ended early they have the flat colours of FATES.
+    Where the normal force `N` falls below zero the wheel lifts off: flat colours of FATES, as for other ends of a run.
+    Boundaries run between the wheels, where the interpolated variable has its level.
 
     tones: the colour map, in steps, one tone between each two levels and one above the last.
     text: of the scale, with {} for the runs' length in s.
+    dress: sets the axis of the spin.
     side: of the paper's mark on which its name stands, 1 right, -1 left.
     """
     style.use_style()
     fig = style.figure_mm(style.PAGE, HEIGHT)
     axes = [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, HEIGHT - 24.0) for k in range(2)]
     colours = style.mpl.colormaps[tones].resampled(len(levels))
-    look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max")}
+    look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max"), "extend": "max"}
     faster = scale(wheel_of(small), s=-1)
     start, beside = (PAPER[0] * faster, PAPER[1]), {"xytext": (6 * side, 3), "ha": "left" if side > 0 else "right"}
-    spin, angle = np.abs(small["phi_dot_start"]), np.degrees(small["theta_start"])
     for ax, s in zip(axes, small["s"].values, strict=True):
-        one = small.sel(s=s)
-        shades = ax.pcolormesh(spin, angle, one[name].where(one["status"] == Status.reached), rasterized=True, **look)
-        for code, colour in FATES.items():
-            fate = one["status"].where(one["status"] == code)
-            ax.pcolormesh(spin, angle, fate, cmap=ListedColormap([colour]), rasterized=True)
-        ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
+        one = small.sel(s=s).transpose("theta_start", "phi_dot_start")
         ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"initial spin $|\dot\varphi|$ [rad/s]")
+        dress(ax)
+        spin, angle, values = to_the_edges(ax, one, one[name].values)
+        shades = ax.contourf(spin, angle, np.minimum(values, 2 * levels[-1]), levels, **look)
+        regions = {code: (one["status"].values == code) * 1.0 - 0.5 for code in FATES if code != Status.lifted_off}
+        if "N" in one:
+            regions[Status.lifted_off] = -one["N"].values
+        x, y = np.meshgrid(np.abs(one["phi_dot_start"]), np.degrees(one["theta_start"]))
+        for code, field in regions.items():
+            if (field > 0).any():
+                tone, word = FATES[code]
+                ax.contourf(*to_the_edges(ax, one, field), [0, np.inf], colors=[tone])
+                label_regions(ax, x, y, field > 0, word)
+        ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
         ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
         paper = "paper" if faster == 1 else "paper, scaled"
         ax.annotate(paper, start, textcoords="offset points", color="white", fontsize=8, **beside)
@@ -73,3 +115,11 @@ def two_maps(small: xr.Dataset, name: str, tones: str, levels: list[float], text
     bar.set_label(text.format(studied(small)["stop_time"]))
     bar.ax.tick_params(size=0)
     return fig, axes
+
+
+def to_the_edges(ax: Axes, one: xr.Dataset, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Spin, angle and a field that go on as they are from the outer wheels to the frame."""
+    spin, angle = np.abs(one["phi_dot_start"].values), np.degrees(one["theta_start"].values)
+    order = np.argsort(spin)
+    wide = [np.concatenate([[low], x, [high]]) for x, (low, high) in ((spin[order], ax.get_xlim()), (angle, (0, 90)))]
+    return wide[0], wide[1], np.pad(values[:, order], 1, mode="edge")

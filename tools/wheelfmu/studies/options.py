@@ -37,6 +37,7 @@ SHOWN = """examples:
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
   ./scripts/study --list starts.csv         one wheel per row; the first row has the names
+  ./scripts/study lean                      goes on with results/studies/lean.zarr, or another folder of results
 """
 
 
@@ -109,9 +110,11 @@ def seconds(text: str) -> float:
 
 
 def file_of(name: str) -> Path:
-    """The file of a study that is given by its path or as an example's name."""
-    path = Path(name) if name.endswith(".py") else EXAMPLES / f"{name}.py"
-    if not path.is_file():
+    """The file of a study that is given by its path or as an example's name; or the folder of results to go on with."""
+    path = Path(name) if name.endswith((".py", ".zarr")) else EXAMPLES / f"{name}.py"
+    if not path.exists() and (kept := ROOT / "results" / "studies" / f"{name}.zarr").is_dir():
+        return kept
+    if not path.exists():
         meant = suggestion(name, dict.fromkeys(NAMES, ""))
         raise StudyError(f"There is no study {name}; the examples are {', '.join(NAMES)}.{meant}")
     return path
@@ -126,7 +129,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add, several = parser.add_argument, {"action": "append", "default": []}
-    add("study", nargs="?", help="an example's name or a Python file")
+    add("study", nargs="?", help="an example's name, a Python file, or earlier results to go on with")
     add("--wheel", metavar="NAME", help="a preset, to which lengths, times and rates of a study's file are scaled")
     add("--body", metavar="NAME", help=f"{', '.join(bodies())}: J_x, J_y, J_z follow from m, r_0, r of each wheel")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
