@@ -19,7 +19,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
 from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
-from wheelfmu.fmu.trust import DEFAULT, REPEATS, TIGHTEST, Motion, Wheel, trust
+from wheelfmu.fmu.trust import DEFAULT, REPEATS, Wheel, trust
 
 BESIDE = 0.06  # decades: marks that are closer are one
 LEAST = 1e-14  # of the range: what is drawn for less
@@ -79,10 +79,12 @@ def methods_of(start: dict[str, str]) -> dict[str, dict[str, str]]:
     return {name: more for name, more in METHODS.items() if name not in left_out}
 
 
-def measured(wheel: Wheel, start: dict[str, str], times: np.ndarray, truth: Motion, scales: np.ndarray) -> list[dict]:
-    """A row per method and tolerance, with its error or why it has none; times are medians of repetitions in turns."""
+def measured(wheel: Wheel, start: dict[str, str], times: np.ndarray, scales: np.ndarray) -> list[dict]:
+    """A row per method and tolerance, with its error by another solver or why it has none; times are medians of
+    repetitions in turns."""
     rows: list[dict] = []
     for method, more in methods_of(start).items():
+        truth = wheel.judge(start | more, times)
         for tolerance in TOLERANCES:
             found = wheel.motion(start | more, times, tolerance)
             failed = abs(len(found.rows) - len(truth.rows)) > 1
@@ -90,7 +92,7 @@ def measured(wheel: Wheel, start: dict[str, str], times: np.ndarray, truth: Moti
             rows.append({"method": method, "tolerance": tolerance, "error": error, "note": note, "costs": []})
     for row in (row for _ in range(TURNS) for row in rows):
         if not row["note"] and not (row["costs"] and row["costs"][0][0] > SLOW):
-            row["costs"].append(wheel.timed(start | METHODS[row["method"]], truth.times, row["tolerance"]))
+            row["costs"].append(wheel.timed(start | METHODS[row["method"]], times, row["tolerance"]))
     ours = min(empty for row in rows for _, empty in row["costs"])  # Python's share, alike for all
     for row in rows:
         costs = [step - ours for step, _ in row.pop("costs")]
@@ -139,12 +141,12 @@ def main(folder: Path, given: dict[str, str]) -> None:
         wheel = Wheel(ROOT / "wheel.fmu", unpacked)
         for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
             start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
-            truth = wheel.motion(start, times, TIGHTEST)
+            truth = wheel.judge(start, times)
             if len(truth.rows) > 1:
                 found = trust(wheel.motion(start, times, DEFAULT, REPEATS), truth, scales)
                 (folder / f"{name}.error").write_text(f"{found.said(label)}\n{found.short}\n", encoding="utf-8")
                 if asked == CHECKS["methods"]:
-                    races[label] = measured(wheel, start, times, truth, scales)
+                    races[label] = measured(wheel, start, truth.times, scales)
     if races:
         write(races, folder)
 

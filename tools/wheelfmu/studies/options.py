@@ -154,7 +154,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--overwrite", action="store_true", help="discard existing results and files")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
-    add("--check", type=count, metavar="N", help="run N wheels again at the tightest tolerance; state their error")
+    add("--check", type=count, metavar="N", help="run N wheels again by another solver; state their error")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
     arguments.preset = preset(arguments.wheel) if arguments.wheel else {}
