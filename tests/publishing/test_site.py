@@ -7,6 +7,7 @@ import runpy
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from lxml import html
@@ -103,3 +104,12 @@ def test_links_that_lead_nowhere_stop_the_site(tmp_path: Path) -> None:
     done = build(tmp_path, tmp_path / "out", "-Dhtml_favicon=", "-Droot_doc=start", "-Dsuppress_warnings=myst.header")
     assert done.returncode != 0
     assert {*re.findall(r"start\.md:(\d+): WARNING.*gone", done.stderr)} == {"3", "5", "7", "9", "11"}
+
+
+@pytest.mark.parametrize("live", ["live.html", ""])
+def test_a_step_of_the_story_opens_the_live_page_where_the_site_has_one(live: str) -> None:
+    read = runpy.run_path(str(CONF / "conf.py"))["read"]
+    source = [(ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")]
+    read(SimpleNamespace(config=SimpleNamespace(html_context={"live": live})), "docs/teaching", source)
+    links = re.findall(r'<a href="\.\./live\.html#step=(\d+)">', source[0])
+    assert links == (["1", "2", "3", "4", "6", "7", "9", "10"] if live else [])
