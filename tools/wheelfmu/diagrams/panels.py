@@ -124,13 +124,14 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     for name, side in parts.items():
         marks += _over_time(ax, scene["time"], scene[name], style.colour(name))
         most = int(np.argmax(abs(scene[name])))
-        place, shift = {"va": "center"}, (5, 0)
+        high = scene[name][most] > 0
+        place, shift = {"va": "bottom" if high else "top", "ha": "center"}, (0, 3 if high else -3)
         if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
             most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
         at, color = (scene["time"][most], scene[name][most]), style.colour(name)
         style.note(ax, f"{side}, {LETTER[name]}", at, shift, color=color, **place)
     _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
-    ax.margins(y=0.12)
+    ax.margins(y=0.2)
     return marks
 
 
