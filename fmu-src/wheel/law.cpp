@@ -26,12 +26,6 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
-void decide_layer(const Setup& setup, const double* y, InForce& now) {
-  const double omega_z = y[setup.formulation->spin_index];
-  now.layered = true;
-  now.scene.friction = std::fabs(omega_z) > layer_edge(setup) ? rolling(omega_z > 0) : regularized(setup);
-}
-
 // The laws to try where the wheel starts to slide: without spin, with rolling friction or brake, first that it is held.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
@@ -92,7 +86,7 @@ void decide_law(const Setup& setup, double t, const double* y, InForce& now, boo
   scene.friction = released ? released_from(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
   const bool stiff = can_stiffen(setup, now) && (now.slides() || softness_of(setup, scene, y) < 0);
-  if (stiff || now.layered) decide_layer(setup, y, now);
+  if (stiff || now.layered) enter_layer(setup, y, now);
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
@@ -153,14 +147,25 @@ bool can_stiffen(const Setup& setup, const InForce& now) {
   return !setup.exchanged && !now.layered && now.scene.friction.kind == WHEEL_REGULARIZED;
 }
 
-// The fastest decay of the law is that at omega_z = 0: (s N + M_brake) / omega_s over the spin inertia, to be compared
-// with the wheel's own time scale; below the limit DOP853 alone is faster.
-double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
-  constexpr double stiff = 500;
+void enter_layer(const Setup& setup, const double* y, InForce& now) {
+  const double omega_z = y[setup.formulation->spin_index];
+  now.layered = true;
+  now.scene.friction = std::fabs(omega_z) > layer_edge(setup) ? rolling(omega_z > 0) : regularized(setup);
+}
+
+// (s N + M_brake) / omega_s over the spin inertia.
+double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
   const double N = std::max(setup.weight, rates_of(setup, scene, y).N);
-  return 1 - (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia) * setup.own_time / stiff;
+  return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia);
+}
+
+// To be compared with the wheel's own time scale; below the limit DOP853 alone is faster through the layer
+// (docs/results/stability.md).
+double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
+  constexpr double stiff = 500;
+  return 1 - decay_of(setup, scene, y) * setup.own_time / stiff;
 }
 
 }  // namespace wheel

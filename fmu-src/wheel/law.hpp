@@ -56,6 +56,9 @@ inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 // Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law, as it
 // is wherever the wheel slides. Once solved so, it stays so until an input or the contact changes.
 bool can_stiffen(const Setup& setup, const InForce& in_force);
+void enter_layer(const Setup& setup, const double* y, InForce& in_force);
+// 1/s, the fastest decay of the law, that at omega_z = 0.
+double decay_of(const Setup& setup, const WheelScene& scene, const double* y);
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
 }  // namespace wheel

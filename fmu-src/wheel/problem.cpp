@@ -12,9 +12,10 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
-// Of few states are only the equations of a wheel that rolls. States beyond those of the equations rest.
+// Of few states are only the equations of a wheel that rolls. States beyond those of the equations rest. Flattened:
+// around a call for an input that varies, registers would be saved at each evaluation.
 template <int states>
-double derivative(void* owner, double t, const double* y, double* y_dot) {
+[[gnu::flatten]] double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
   const WheelFormulation& formulation =

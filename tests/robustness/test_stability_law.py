@@ -220,3 +220,32 @@ def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid
         within((steps - count) / bdf[0], 1.5, "steps over those of BDF")  # an input that varies cuts at each point
         within(absolute_error(found, bdf[1:]), 1e-4, "motion off that of BDF, rad/s, rad")
     beyond(absolute_error(end(factor=1.01)[1:], found), 1e-6, "motion off that of a stronger brake")
+
+
+RESTS = {  # omega_z comes to rest in the layer: braked, by friction alone, against a torque
+    "braked": {"s": 0.003, "M_brake": 20.0},
+    "friction": {"s": 0.1},
+    "torque": {"s": 0.003, "M_brake": 20.0, "M_3": 7.0},
+}
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
+@pytest.mark.parametrize("rest", RESTS)
+def test_a_rest_costs_about_the_same_at_every_width(library: Library, rest: str, tolerance: float) -> None:
+    start = {"guided": True, "theta_start": np.pi / 2, "friction_law": 2, **RESTS[rest]}
+    widths = 10.0 ** np.arange(-9, 1.01, 0.5)
+    costs = [run(library, {**start, "omega_s": float(w)}, [0, 10], tolerance).counters["n_rhs"] for w in widths]
+    ratios = [max(pair) / min(pair) for pair in zip(costs, costs[1:], strict=False)]
+    within(max(ratios), 3, "cost over that of a neighbour")
+
+
+def test_a_rest_in_a_soft_law_depends_on_no_communication_point_and_survives_a_snapshot(wheel) -> None:
+    start = {"guided": True, "theta_start": np.pi / 2, "friction_law": 2, "omega_s": 3e-3, **RESTS["torque"]}
+    ends = [wheel().start(**start).to(*np.arange(1, count + 1) * (3 / count)).bits() for count in (1, 30, 3000)]
+    w = wheel().start(**start)
+    for t in np.arange(0.1, 3, 0.1):
+        w = wheel().back(w.to(t).serialized())
+    assert len({*ends, w.to(3.0).bits()}) == 1
+    omega_z = np.frombuffer(wheel().start(**start).to(3.0).read(["omega_z"]))[0]
+    capacity = 0.003 * 20 * 9.81 + 20  # tanh(omega_z / omega_s) times it balances the torque
+    within(abs(omega_z - 3e-3 * np.arctanh(7 / capacity)), 1e-12, "spin at rest, rad/s")
