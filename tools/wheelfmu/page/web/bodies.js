@@ -121,7 +121,7 @@ export class WheelModel {
     const marked = {color: wheel.colour, specular: '#222', shininess: 15};
     this.body = new THREE.Group().add(...makeBody(look, marked));
     this.body.name = `spin:${name}`;
-    for (const [i, length] of [1.5, 1.5, 1.125].entries()) {
+    for (const [i, length] of [1.5, 1.2, 1.125].entries()) {
       const along = new THREE.Vector3().setComponent(i, length * radius);
       this.axes.add(...makeNamed(
           `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));

@@ -69,7 +69,8 @@ export const PORTRAITS = {
   phase: kind(
       'θ̇ (θ)', ['°', '°/s'], ['theta', 'theta_dot'],
       'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
-      (values) => values.map((value) => value * DEGREES)),
+      (values) => values.map((value) => value * DEGREES),
+      {fits: (wheels) => !wheels.every(guided) || moves(wheels, 'theta')}),
   spin: kind(
       'ω_z (ω_2)', ['rad/s', 'rad/s'], ['theta', 'psi_dot', 'omega_z'],
       'Angular velocity about the axle over that about e2, which points up in the plane of the wheel. ' +
