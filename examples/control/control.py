@@ -104,7 +104,7 @@ def leaning(folder: Path, gains: np.ndarray, spin: float, h: float = 0.01, stop:
     rolling, times = {"theta": np.pi / 2, "omega_z": spin}, np.arange(0, stop + h / 2, h)
     start = {"psi": 0.0, "X_O": 0.0, "theta": np.pi / 2 - 0.15, "Y_O": 0.3, "phi_dot": spin}
     x = rolled(folder, times, lambda _, now: -gains @ [now[n] - rolling.get(n, 0.0) for n in OFF], **start)
-    return {"t": times[: len(x["theta"])], "off": x["Y_O"], "lean": np.degrees(x["theta"]) - 90}
+    return {"t": times[: len(x["theta"])], "off": x["Y_O"], "lean": 90 - np.degrees(x["theta"])}
 
 
 def draw_regulator(folder: Path) -> str:
@@ -113,14 +113,14 @@ def draw_regulator(folder: Path) -> str:
     gains = regulator(folder, spin)
     wheels = {"alone": leaning(folder, 0 * gains, spin), "with the regulator": leaning(folder, gains, spin)}
     _, axes = plt.subplots(2, 1, figsize=(7.2, 4.4), sharex=True, layout="constrained")
-    labels = {"off": "off the line, $Y_O$ [m]", "lean": r"lean, $\theta - 90°$ [deg]"}
+    labels = {"off": "off the line, $Y_O$ [m]", "lean": r"lean, $90° - \theta$ [deg]"}
     for ax, (name, label) in zip(axes, labels.items(), strict=True):
         for wheel, x in wheels.items():
             ax.plot(x["t"], x[name], label=wheel)
         ax.set_ylabel(label)
     axes[0].set_title(rf"Below the critical spin: $|\omega_z|$ = {-spin} rad/s")
     axes[1].set(xlabel="time [s]", yticks=range(-90, 91, 45))
-    axes[1].legend(loc="upper right")
+    axes[1].legend(loc="lower right")
     fallen, held = (np.abs(x["lean"]) for x in wheels.values())
     return f"lean: {fallen.max():.0f} deg alone, {held[-1]:.2g} deg after 6 s with the regulator"
 
@@ -171,7 +171,7 @@ def draw_optimal(folder: Path) -> str:
     axes[0].plot(x["X_O"], x["Y_O"])
     axes[0].set(xlabel="$X_O$ [m]", ylabel="$Y_O$ [m]", aspect="equal")
     axes[0].set_title("Upright and onto the line, with the least effort")
-    axes[1].plot(t, np.degrees(x["theta"]) - 90, label=r"lean, $\theta - 90°$")
+    axes[1].plot(t, 90 - np.degrees(x["theta"]), label=r"lean, $90° - \theta$")
     axes[1].plot(t, np.degrees(x["psi"]), label=r"heading $\psi$")
     axes[1].set(xlabel="time [s]", ylabel="angle [deg]")
     axes[2].step(t[:-1], moments.T, where="post", label=["$M_1$", "$M_3$"])

@@ -106,7 +106,7 @@ def from_above(ax: Axes, title: str, legend: str) -> None:
 @part(2)
 def energy(report: Report) -> Row:
     """what friction takes, and the weak releases of a long run"""
-    rough, free, long = run(report, **FRICTION), run(report), run(report, 150, 0.05, **FRICTION)
+    rough, free, long = run(report, 10, 1e-3, **FRICTION), run(report, 10, 1e-3), run(report, 150, 0.05, **FRICTION)
     sticks = rough["friction_mode"] == 0
     with picture(report, "physics_energy") as (left, right):
         edges = np.concatenate([rough.t[:1], (rough.t[:-1] + rough.t[1:]) / 2, rough.t[-1:]])
@@ -180,7 +180,7 @@ def tipping(report: Report) -> Row:
     with picture(report, "physics_tipping", "a") as (ax,):
         ax.plot(found.t, np.where(lean(found) > 0, lean(found), np.nan), color=style.BLUE, label="wheel.fmu")
         growth = np.cos(UPRIGHT) * np.cosh(TIPPING * found.t)
-        ax.plot(found.t, growth, "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\kappa t$")
+        ax.plot(found.t, growth, "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\nu t$")
         title, limits = "At rest, theta_start = the number nearest to $\\pi/2$", {"xlim": (0, 10), "ylim": (1e-17, 3)}
         label(ax, TIME, "size of the lean [rad]", title, "y", "upper left", **limits)
     tilted = lean(run(report, 15, theta_start=UPRIGHT - 1e-9, **rolling)).max()
