@@ -31,7 +31,7 @@ const upright = ({table: {columns: {time, theta}}, phases: {slides}}) =>
 /** Whether the speed of the centre and that of rolling are the subject: of a wheel in its plane. */
 const brakes = (wheel) => guided(wheel) || (wheel.phases.slides.length > 0 && upright(wheel));
 const acts =
-    ({table: {shown}}) => ['M_guide_1', 'M_guide_2'].some((name) => shown[name]?.some((moment) => moment !== 0));
+    ({table: {shown}}) => ['M_guide_1', 'M_guide_2'].some((name) => shown[name]?.some((moment) => Math.abs(moment) > 1e-9));
 const moves = (wheels, name) => wheels.some(({table}) => {
   const [low, high] = extent(table.shown[name]);
   return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
