@@ -1,6 +1,6 @@
 /* Sine and cosine of an angle, the angle of a vector, an angle less whole turns.
  *
- * Sine and cosine are computed side by side: a processor computes two numbers at the cost of one. Reduction to
+ * Sine and cosine are computed side by side: a processor computes two numbers at the cost of one. Remainders in
  * [-pi/4, pi/4] and polynomials of FDLIBM (Sun Microsystems, 1993: e_rem_pio2.c, k_sin.c, k_cos.c). */
 #include <math.h>
 #include <stdint.h>
@@ -12,18 +12,18 @@ typedef uint64_t Bits __attribute__((vector_size(sizeof(Two))));
 #define SIGN UINT64_C(0x8000000000000000)
 
 /* An angle less n quarter turns, and what `angle` rounds off. */
-typedef struct Reduced {
+typedef struct Remainder {
   double angle, rest;
   int n;
-} Reduced;
+} Remainder;
 
 /* False, rarely, where the quarter turns need more digits of pi. */
-static inline int reduce_angle(double x, Reduced* out) {
+static inline int remainder_of(double x, Remainder* out) {
   const double quarter = 1.57079632673412561417e+00, quarter_rest = 6.07710050650619224932e-11; /* 33 + 53 bits */
   const double size = fabs(x), per_rad = 6.36619772367581382433e-01;
   double r, w;
   int n = 1;
-  *out = (Reduced){x, 0, 0};
+  *out = (Remainder){x, 0, 0};
   if (size < 0x1.921fbp-1) return 1; /* pi/4 */
   if (!(size < 0x1p19)) return 0;
   if (size < 0x1.2d97cp1) { /* 3 pi/4: the tilt of most wheels */
@@ -35,7 +35,7 @@ static inline int reduce_angle(double x, Reduced* out) {
     w = n * quarter_rest;
   }
   double angle = r - w, rest = (r - angle) - w;
-  *out = x < 0 ? (Reduced){-angle, -rest, -n} : (Reduced){angle, rest, n};
+  *out = x < 0 ? (Remainder){-angle, -rest, -n} : (Remainder){angle, rest, n};
   return fabs(angle) > size * 0x1p-16;
 }
 
@@ -49,8 +49,8 @@ Sines wheel_sines(double angle) {
                            {1.58969099521155010221e-10, -1.13596475577881948265e-11}};
   static const Bits exchanged[] = {{0, 0}, {ALL, ALL}, {0, 0}, {ALL, ALL}};
   static const Bits signs[] = {{0, 0}, {0, SIGN}, {SIGN, SIGN}, {SIGN, 0}};
-  Reduced of;
-  if (!reduce_angle(angle, &of)) return (Sines){sin(angle), cos(angle)};
+  Remainder of;
+  if (!remainder_of(angle, &of)) return (Sines){sin(angle), cos(angle)};
   const double x = of.angle, z = x * x, half = 0.5 * z, most = 1 - half;
   const Two large = {x, most}, small = {of.rest - half * of.rest, ((1 - most) - half) - x * of.rest};
   const Two zz = {z, z}, z_4 = zz * zz, factor = {z * x, z * z};

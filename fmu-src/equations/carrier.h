@@ -48,6 +48,7 @@ Sines wheel_sines(double angle);
 /* What a caller does not read is not computed, and what it gives as a constant is not asked for. */
 #define INLINED __attribute__((always_inline)) static inline
 
+/* (theta, omega_1, omega_2, omega_3, psi) => geometry, v_O, the rates of the angles */
 INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
   Sines theta = wheel_sines(y[WHEEL_THETA]), psi = wheel_sines(y[WHEEL_PSI]);
   Carrier c = {.sin_theta = theta.sine, .cos_theta = theta.cosine, .sin_psi = psi.sine, .cos_psi = psi.cosine};
@@ -65,6 +66,7 @@ INLINED Carrier carrier_of(const WheelParameters* w, const double* y) {
   return c;
 }
 
+/* (J_x, J_y, phi) => I_11, I_22, p, q */
 static inline Inertia inertia_of(const WheelParameters* w, double phi) {
   if (w->J_x == w->J_y) return (Inertia){.I_11 = w->J_x, .I_22 = w->J_x};
   double mean = 0.5 * (w->J_x + w->J_y), D = 0.5 * (w->J_x - w->J_y);
@@ -73,7 +75,8 @@ static inline Inertia inertia_of(const WheelParameters* w, double phi) {
   return (Inertia){.I_11 = mean + q, .I_22 = mean - q, .p = p, .q = q};
 }
 
-/* The external moment, and that by which the wheel resists being turned with its axle; H: angular momentum about O. */
+/* (load, inertia, omega) => the external moment less that by which the wheel resists being turned with its axle; H:
+ * angular momentum about O */
 static inline Moment moment_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
   const WheelParameters* w = &scene->wheel;
   double H_1 = I->I_11 * c->omega_1 + I->p * c->omega_2;
@@ -112,6 +115,11 @@ static inline void road_force(const WheelScene* scene, const Carrier* c, double*
   int none = F_X == 0 && F_Y == 0;
   *along = none ? 0 : F_X * c->cos_psi + F_Y * c->sin_psi;
   *left = none ? 0 : F_Y * c->cos_psi - F_X * c->sin_psi;
+}
+
+/* (law, omega_3) => kappa, without a call where its sign is given */
+static inline double kappa_of(const WheelFriction* law, double omega_3) {
+  return law->kind == WHEEL_ROLLING ? law->sigma : wheel_kappa(law, omega_3);
 }
 
 /* Two numbers in one store: a solver reads them so, and a processor waits where it reads two stores at once. */

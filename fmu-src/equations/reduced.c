@@ -35,6 +35,7 @@ typedef struct AxleLaw {
   double brake;    /* N m, capacity of the brake times kappa */
 } AxleLaw;
 
+/* (load, inertia, geometry, omega) => k, moment */
 static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
   const WheelParameters* w = &scene->wheel;
   double F_1, F_h, F_Z = scene->load.F[2]; /* {F} of (15): along e1, across it, and across the road */
@@ -50,6 +51,7 @@ static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Ca
   };
 }
 
+/* (inertia, geometry, drift) => the system, N for tau = 0 */
 static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
   double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
@@ -79,7 +81,8 @@ static inline System system_of(const WheelParameters* w, const Inertia* I, const
   return s;
 }
 
-/* Moment about the axle. Rolling: tau = -(lever N + brake) and N = N_free + alpha tau. Held: omega_3_dot = 0. */
+/* (system, law) => tau, the moment about the axle. Rolling: tau = -(lever N + brake) and N = N_free + alpha tau. Held:
+ * omega_3_dot = 0. */
 static inline double axle_moment(const System* s, const AxleLaw* law) {
   if (law->held) return s->a_23 * (s->b_2 / s->b_22) - s->h_3;
   double N = s->N;
@@ -87,6 +90,7 @@ static inline double axle_moment(const System* s, const AxleLaw* law) {
   return -(law->lever * N + law->brake);
 }
 
+/* (system, law) => omega_dot, N, tau */
 static inline Accelerations solve(const System* s, const AxleLaw* law) {
   double tau = axle_moment(s, law), h_3 = s->h_3 + tau;
   return (Accelerations){
@@ -131,6 +135,7 @@ typedef struct Instant {
   System system; /* unless guided */
 } Instant;
 
+/* (scene, y) => geometry, drift, system */
 INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
@@ -140,11 +145,12 @@ INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided)
   return now;
 }
 
+/* (instant, law) => omega_dot, N, tau */
 INLINED Accelerations accelerations_of(const WheelScene* scene, const Instant* now, AxleLaw law, int guided) {
   return guided ? move_guided(scene, &now->carrier, &now->drift, law) : move(&now->system, law);
 }
 
-/* The horizontal reaction, of R = m a - F turned into fixed axes: lambda_1, lambda_2. */
+/* (instant, omega_dot) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
 static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
   const Carrier* c = &now->carrier;
   double R_1 = now->drift.k_1 + w->m * (c->eta * a->omega_2_dot - c->rho * a->omega_3_dot);
@@ -154,8 +160,9 @@ static inline void reaction_of(const WheelParameters* w, const Instant* now, con
   to_fixed(c, R_1, R_h, &lambda[0], &lambda[1]);
 }
 
+/* (friction, brake, omega_3) => law about the axle */
 static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
-  double kappa = scene->friction.kind == WHEEL_ROLLING ? scene->friction.sigma : wheel_kappa(&scene->friction, omega_3);
+  double kappa = kappa_of(&scene->friction, omega_3);
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
       .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
@@ -181,6 +188,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
   y[WHEEL_Y_O] = motion->Y_O;
 }
 
+/* (scene, y) => y_dot; returns N */
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);

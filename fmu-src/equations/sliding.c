@@ -35,10 +35,9 @@ typedef struct Motion {
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
 } Motion;
 
-/* Linear in the action and in the horizontal force f of the ground. Unless a wheel carrier gives omega_1 and omega_2:
- *   [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ]
- *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x          ]
- *   J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */
+/* (action, horizontal force f of the ground) => omega_dot, N, tau, rate of the slip; linear in both. Unless a wheel
+ * carrier gives omega_1 and omega_2: [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ] [ p I_22 ]
+ * {omega_dot} =  [ M_2 - eta f_x          ] J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */
 static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
   const Carrier* c = &b->carrier;
   double p = b->inertia.p, M_2 = on->M.M_2 - c->eta * f_x, M_3 = on->M.M_3 + c->rho * f_x;
@@ -57,6 +56,7 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   };
 }
 
+/* (scene, y) => geometry, inertia, what acts apart from the sliding friction */
 INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
@@ -84,7 +84,7 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   a->a_x = F_x * b.per_mass + c->omega_1 * (w->r * c->sin_theta * c->omega_2 + c->eta * c->omega_3 - c->psi_dot * b.h);
   a->a_y = F_y * b.per_mass + b.l * omega_1_2 - c->psi_dot * c->v_1;
   a->brake = load->brake;
-  b.kappa = wheel_kappa(&scene->friction, c->omega_3);
+  b.kappa = kappa_of(&scene->friction, c->omega_3);
   b.held = scene->friction.kind == WHEEL_HELD;
   b.N_free = motion_of(w, &b, a, 0, 0).a.N;
   /* The sign of N is that without sliding friction as long as there is room. */
@@ -94,16 +94,18 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   return b;
 }
 
-/* What is left of 1 under friction against a slip along d: N = N_free / room. */
+/* (direction d of the slip) => what friction against it leaves of 1: N = N_free / room */
 static inline double room_of(const Body* b, double d_x, double d_y) {
   return 1 + b->mu * (b->g_x * d_x + b->g_y * d_y);
 }
 
+/* (direction d of the slip) => motion under mu N against it */
 static inline Motion slide(const WheelParameters* w, const Body* b, double d_x, double d_y) {
   double force = b->mu * b->N_free / room_of(b, d_x, d_y);
   return motion_of(w, b, &b->given, -force * d_x, -force * d_y);
 }
 
+/* (direction chi of the slip) => N, room, growth, turn, settling */
 static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
   static const Action none = {.brake = 0};
   double d_x = cos(chi), d_y = sin(chi), room = room_of(b, d_x, d_y);
@@ -131,6 +133,7 @@ static double turning(const WheelParameters* w, const Body* b, double chi) {
   return slip.turn * slip.room;
 }
 
+/* turning > 0 at lo, <= 0 at hi => chi between them, by halving, to the last digit */
 static double zero_of_turning(const WheelParameters* w, const Body* b, double lo, double hi) {
   for (int i = 0; i < 60; ++i) {
     double middle = 0.5 * (lo + hi);
@@ -142,6 +145,11 @@ static double zero_of_turning(const WheelParameters* w, const Body* b, double lo
   return 0.5 * (lo + hi);
 }
 
+/* From the direction against the force of rolling to both sides in turn, until a zero of the turning is found where
+ *   it falls: a slip that turns a little comes back;
+ *   growth >= 0, to rounding: the slip grows;
+ *   room and N are positive;
+ * or 180 parts of the circle are searched: NaN. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   const int parts = 180;
   static const Action none = {.brake = 0};
@@ -152,9 +160,9 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
   double least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
-  for (int i = 0; i < parts; ++i) { /* from `against` to both sides in turn */
+  for (int i = 0; i < parts; ++i) {
     double lo = against + part * ((i % 2 ? -(i + 1) / 2 : i / 2) - 0.5), hi = lo + part;
-    if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue; /* settling > 0 */
+    if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue;
     double chi = zero_of_turning(w, &b, lo, hi);
     WheelSlip slip = slip_of(w, &b, chi);
     if (slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0) return chi;

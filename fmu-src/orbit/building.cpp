@@ -56,7 +56,11 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
   return result_;
 }
 
-// Steps past T1 and T2. A start with omega_1 = 0 is T1.
+// Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
+//   omega_1 changes its sign for the second time: unfolded, if the half is mirrored;
+//   the swing between both is no larger than errors: refused;
+//   an event ends the motion: ended;
+//   an event bends it, a step fails, or the track is full: refused.
 Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);

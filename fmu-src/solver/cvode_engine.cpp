@@ -10,10 +10,29 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "cvode_objects.hpp"
-
 namespace solver {
+
+// What SUNDIALS allocates for one solver.
+struct CvodeObjects {
+  // What the functions that CVODE calls are given, of the step under way. CVODE keeps copies of its address: it never
+  // moves.
+  struct Call {
+    const Problem* problem;
+    Counters* counters;
+    double lowest_margin;
+  } call;
+  int states;
+  SUNContext context;
+  N_Vector y;
+  void* cvode;
+  SUNNonlinearSolver corrector;  // Adams
+  SUNMatrix matrix;              // BDF
+  SUNLinearSolver linear;        // BDF
+};
+
 namespace {
+
+double* data(N_Vector v) { return N_VGetArrayPointer(v); }
 
 // The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
 constexpr double cvode_share = 0.003;
@@ -30,7 +49,7 @@ constexpr double corrector_share = 0.05;
 constexpr int highest_adams_order = 9;
 
 int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
-  CvodeCall& call = *static_cast<CvodeCall*>(user);
+  auto& call = *static_cast<CvodeObjects::Call*>(user);
   ++call.counters->rhs;
   const double margin = call.problem->derivative(call.problem->owner, t, data(y), data(y_dot));
   if (margin < call.lowest_margin) call.lowest_margin = margin;
@@ -38,7 +57,7 @@ int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
 }
 
 int weights(N_Vector y, N_Vector w, void* user) {
-  const Problem& problem = *static_cast<CvodeCall*>(user)->problem;
+  const Problem& problem = *static_cast<CvodeObjects::Call*>(user)->problem;
   problem.weights(problem.owner, cvode_share * problem.share, data(y), data(w));
   return 0;
 }

@@ -101,7 +101,7 @@ struct RungeKutta::Work {
     return high == 0 ? 0 : high * high / std::sqrt(high * high + 0.01 * low * low);
   }
 
-  // The error of the step over h in units of the weights; infinite where f is not finite.
+  // (h) => y at the end, and the error of the step in units of the weights; infinite where f is not finite.
   double try_size() {
     const bool done = stage<1>(at) && stage<2>(at) && stage<3>(at) && stage<4>(at) && stage<5>(at) && stage<6>(at) &&
                       stage<7>(at) && stage<8>(at) && stage<9>(step.y_inside) && stage<10>(at) && stage<11>(at);
@@ -146,7 +146,9 @@ struct RungeKutta::Work {
     return accept_step(stop, &liked);
   }
 
-  // Tries smaller and smaller steps until one is accepted.
+  // Tries smaller and smaller steps until
+  //   the error is at most one, and f is finite at the end: the step is accepted;
+  //   the step is lost in the rounding of time, or most_attempts are made.
   const char* accept_step(double stop, double* liked) {
     const double limit = engine.limit_,
                  longest = limit > 0 ? std::fmin(limit, problem.longest_step) : problem.longest_step;

@@ -44,7 +44,10 @@ bool Search::stays_above(Sample lo, Sample mid, Sample hi) {
   return lowest > 0.25 * std::fabs(p.bend) + 0.1 * range;
 }
 
-// The first sample below zero that can be found, and the one before it. lo.g >= 0.
+// (three samples, lo.g >= 0) => the first one below zero that can be found, and the one before it. An interval is left
+//   where a parabola shows that g stays above zero;
+//   where it has been halved `depth` times, spans a few roundings of time, or the budget of samples is spent: what its
+//   three samples show counts.
 std::optional<Search::Fall> Search::look(Sample lo, Sample mid, Sample hi, int depth, int* budget) const {
   if (mid.g >= 0 && stays_above(lo, mid, hi)) return {};
   const bool deeper = depth > 0 && *budget >= 2 && hi.t - lo.t > 8 * rounding_at(hi.t);
@@ -77,8 +80,10 @@ std::optional<double> Search::find_first_fall(Sample lo, Sample hi) const {
   return {};
 }
 
-// Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse quadratic interpolation where it is safe, else
-// halving. lo.g >= 0 > hi.g. Returns the first instant known to be below zero, a few roundings past the root.
+// (lo.g >= 0 > hi.g) => the first instant known to be below zero, a few roundings past the root. Chandrupatla, Advances
+// in Engineering Software 28 (1997) 145: inverse quadratic interpolation where it is safe, else halving, until
+//   the interval spans a few roundings of time;
+//   100 samples are taken, which none needs.
 double Search::fall_through(Sample lo, Sample hi) const {
   Sample a = hi, b = lo, c = hi;  // a is the latest, b on the other side of the root
   double x = 0.5;

@@ -1,4 +1,7 @@
 // The laws of the contact: rolling friction, the start and the end of a slide.
+//
+// decide_contact: does the wheel grip? If so, decide_law: the law of friction; a stiff one by enter_layer. If not,
+// begin_slide: the direction of the slip and the law, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>
@@ -16,7 +19,7 @@ WheelFriction regularized(const Setup& setup) { return {WHEEL_REGULARIZED, 0, se
 // Rolling against the moment that would hold the wheel.
 WheelFriction released_from(const Held& hold) { return rolling(!(hold.tau > 0)); }
 
-// The law apart from layers.
+// (scene, y) => the law, apart from layers.
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
   if (setup.friction_law == regularized_law) return regularized(setup);

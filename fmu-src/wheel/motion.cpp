@@ -169,7 +169,11 @@ bool is_about_to_jam(const Wheel& w) {
   return start_solver(w);
 }
 
-// Stage 3 of a motion that is stepped through: up to t, or up to an event that ends the run.
+// Stage 3 of a motion that is stepped through, until
+//   t is known: stepped;
+//   an event ends the run, or a step fails where the wheel is about to jam: event;
+//   a step fails elsewhere, or the solver cannot start: failed;
+//   most_work is done: failed.
 Outcome step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solver;
   const long long work_per_step = w.setup.formulation->states == WHEEL_MULTIBODY_STATES ? work_per_multibody_step : 1;

@@ -12,8 +12,9 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
-// Of few states are only the equations of a wheel that rolls. States beyond those of the equations rest. Flattened:
-// around a call for an input that varies, registers would be saved at each evaluation.
+// (t, y) => y_dot; returns the least margin. Of few states are only the equations of a wheel that rolls. States beyond
+// those of the equations rest. Flattened: around a call for an input that varies, registers would be saved at each
+// evaluation.
 template <int states>
 [[gnu::flatten]] double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
@@ -37,8 +38,9 @@ double rounding_of_rates(double theta, double turns, bool slides) {
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
 }
 
-// The states' own rounding is a floor: no step has to be more exact than the numbers can express. The regularized law
-// turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a fraction of that width.
+// (share, y) => weights. The states' own rounding is a floor: no step has to be more exact than the numbers can
+// express. The regularized law turns errors of omega_z into moments over its width omega_s: the spin must be accurate
+// to a fraction of that width.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;

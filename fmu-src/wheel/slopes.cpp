@@ -179,7 +179,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   return true;
 }
 
-// 1/s, how fast the wheel moves, of states of the reduced forms.
+// (y, y_dot of the reduced forms) => how fast the wheel moves, 1/s.
 double pace_of(const double* y, const double* y_dot, bool slides) {
   double swing = 0;
   for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) swing += std::fabs(y_dot[rate]);
