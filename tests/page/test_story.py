@@ -251,6 +251,7 @@ ASKS = (2, 4, 5, 10)
 @pytest.mark.parametrize("step", ASKS)
 def test_a_step_that_asks_hides_the_future_until_it_plays(live, story, step):
     said = story(step)
+    live.evaluate("page.player.play()")  # the step before plays
     live.evaluate(ASK, step)
     hidden = "[page.plots.all.every(({secret}) => secret), page.pose() ?? page.stage.models[0].whole.visible]"
     assert live.evaluate("page.player.playing") is False and live.evaluate(hidden) == [True, False]

@@ -213,6 +213,7 @@ export class LiveWheel {
     page.choose(view);
     const {speed = 1, balance} = this.steps[step] ?? {};
     if (question && t === 0) {
+      page.player.pause();
       this.guess = {asks: true};
       page.plots.keepSecret(true, !question.fates);
     }
