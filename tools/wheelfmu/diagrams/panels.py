@@ -251,7 +251,7 @@ def _curves(ax: Axes, scene: Scene, curves: dict[str, tuple[Array, str]]) -> lis
 def draw_rates(ax: Axes, scene: Scene) -> list[str]:
     """Fig. 3, 6: phi_dot over psi_dot; stick phases are thick. The texts beside the curve come with write_rates."""
     ax.set_xlabel(rf"precession rate {PSI_DOT} [rad/s]")
-    ax.set_ylabel(rf"spin rate {PHI_DOT} [rad/s]")
+    ax.set_ylabel(rf"rate {PHI_DOT} [rad/s]")
     x, y, stick = _rates(scene)
     if scene.still:
         ax.plot(x[:1], y[:1], "o", color=style.BLUE, markersize=4.0)
