@@ -28,7 +28,7 @@ def printed(notebook: nbformat.NotebookNode) -> list[str]:
 def test_the_notebook_keeps_what_its_cells_give_and_nothing_of_the_machine(fmu_path: Path, tmp_path: Path) -> None:
     words, fresh = (printed(book) for book in (nbformat.read(NOTEBOOK, 4), executed(str(fmu_path), str(tmp_path))))
     assert words == fresh, "run ./scripts/notebook --write"
-    assert words.count("a picture") == 5 and "nan" not in "".join(words)
+    assert words.count("a picture") == 7 and "nan" not in "".join(words)
     assert f"{critical_spin(PAPER):.4f} rad/s" in "".join(words)
     text = NOTEBOOK.read_text(encoding="utf-8")
     assert "it/s" not in text and "iopub" not in text and "stderr" not in text

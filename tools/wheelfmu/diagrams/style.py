@@ -6,6 +6,7 @@ contrast. `colours.json` has them, and that of each quantity, also for the brows
 """
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 from numpy.typing import ArrayLike
 
-mpl.use("Agg")
+if "ipykernel" not in sys.modules:  # a notebook shows what it draws
+    mpl.use("Agg")
 
 COLOURS = json.loads(Path(__file__).with_name("colours.json").read_text(encoding="utf-8"))
 PALETTE = {name: tone["light"] for name, tone in COLOURS["palette"].items()}

@@ -15,11 +15,14 @@ KEPT = ("text/plain", "image/png")
 
 
 def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat.NotebookNode:
-    """The notebook with fresh outputs; fmu, results: in the place of ../wheel.fmu and ../results."""
+    """The notebook with fresh outputs; fmu, results: in the place of ../wheel.fmu and ../results.
+
+    As without Jupyter's widgets, of which no file keeps what they show.
+    """
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     cells = [(cell, cell.source) for cell in notebook.cells]
     for cell, source in cells:
-        cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results)
+        cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results).replace("from ipywidgets", "from no_widgets")
     place = {"metadata": {"path": NOTEBOOK.parent}}
     # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
     NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place).execute()
