@@ -145,11 +145,6 @@ INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided)
   return now;
 }
 
-/* (instant, law) => omega_dot, N, tau */
-INLINED Accelerations accelerations_of(const WheelScene* scene, const Instant* now, AxleLaw law, int guided) {
-  return guided ? move_guided(scene, &now->carrier, &now->drift, law) : move(&now->system, law);
-}
-
 /* (instant, omega_dot) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
 static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
   const Carrier* c = &now->carrier;
@@ -192,7 +187,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
-  Accelerations a = accelerations_of(scene, &now, law, guided);
+  Accelerations a = guided ? move_guided(scene, &now.carrier, &now.drift, law) : move(&now.system, law);
   double X_dot, Y_dot;
   set_velocity(&scene->wheel, &now.carrier, &X_dot, &Y_dot);
   set_rates(&now.carrier, &a, y_dot);
@@ -227,7 +222,8 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Instant now = instant_of(scene, y, scene->guided);
-  Accelerations a = accelerations_of(scene, &now, law_of(scene, y[WHEEL_OMEGA_3]), scene->guided);
+  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]);
+  Accelerations a = scene->guided ? move_guided(scene, &now.carrier, &now.drift, law) : move(&now.system, law);
   reaction_of(&scene->wheel, &now, &a, out->lambda);
   set_dynamics(scene, &now.carrier, &a, out);
 }

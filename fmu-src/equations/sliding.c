@@ -70,15 +70,13 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   b.per_mass = 1 / w->m;
   b.per_spin = 1 / w->J_z;
   b.guided = guided;
-  if (guided) {
-    a->turn[0] = load->turn[1];
-    a->turn[1] = guided_rate(c, load->turn[0]);
-  } else {
-    b.per_22 = 1 / b.inertia.I_22;
-    b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
-    b.g_x = w->m * b.l * b.per_tilt * (c->eta * p * b.per_22);
-    b.g_y = w->m * b.l * b.per_tilt * b.h;
-  }
+  b.per_22 = 1 / b.inertia.I_22;
+  b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
+  double lift = guided ? 0 : w->m * b.l * b.per_tilt;
+  b.g_x = lift * (c->eta * p * b.per_22);
+  b.g_y = lift * b.h;
+  a->turn[0] = load->turn[1];
+  a->turn[1] = guided_rate(c, load->turn[0]);
   a->M = moment_of(scene, &b.inertia, c);
   a->N_rest = w->m * (w->g - w->r_0 * c->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + c->omega_1 * (w->r * c->sin_theta * c->omega_2 + c->eta * c->omega_3 - c->psi_dot * b.h);

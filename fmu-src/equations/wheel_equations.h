@@ -231,6 +231,10 @@ void wheel_horizontal_force(const WheelKinematics* motion, const double lambda[3
 void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, const WheelDynamics* dynamics,
                         double out[2]);
 
+/* The motion of a guided wheel after a jump of the carrier's rates to psi_dot and theta_dot, rad/s: the limit of ever
+ * steeper ramps of both. phi_dot and a slip change with them. */
+void wheel_turn(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion);
+
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);
 

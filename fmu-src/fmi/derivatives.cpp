@@ -42,15 +42,12 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
     if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
-      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]))
-        return i.log(Topic::error, "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.",
+      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]) ||
+          (values[k] != 0 && rests(i.wheel, v[k])))
+        return i.log(Topic::error,
+                     "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, of a carrier's rate "
+                     "only where it turns: guided, by co-simulation.",
                      orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
-    const bool rests = is_running(i.wheel.run.phase) && !i.wheel.setup.turns();
-    for (std::size_t k = 0; k < n; ++k)
-      if (rests && v[k] >= wheel::first_guide && values[k] != 0)
-        return i.log(Topic::discard,
-                     "%s: derivative %d = %s of %s: only the carrier of a guided wheel turns, by co-simulation.",
-                     orders[k], values[k], wheel::row_of(v[k]).name);
     for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, v[k], values[k], orders[k]);
     return fmi2OK;
   });

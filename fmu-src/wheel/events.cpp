@@ -34,9 +34,9 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   const WheelFriction& law = now.scene.friction;
   const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
-  const auto hold = [&](const WheelScene& scene) { return held_at(setup, scene, y); };
   if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin) : now.at(t, hold).reserve / setup.moment_scale;
+    return std::fabs(spin) > spin_error ? -std::fabs(spin)
+                                        : held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
   return -now.scene.load.brake / setup.moment_scale;
 }
 

@@ -45,6 +45,8 @@ bool continues(const double* c, double tau, double rounding, const double* next)
 
 }  // namespace
 
+bool is_turning(const Polynomials& inputs) { return acts(inputs[guide_input], 0) || acts(inputs[guide_input + 1], 0); }
+
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
   if (input < brake_input) return &load.M[input - 3];
@@ -72,10 +74,10 @@ void Inputs::take_over(double t, const Polynomials& asked, bool guided) {
   count = guided ? inputs_count : guide_input;
   std::memcpy(c, asked, sizeof c);
   loaded = varies = false;
-  turning = guided && std::any_of(c + guide_input, c + count, [](const auto& input) { return acts(input, 0); });
-  for (int i = 0; i < (turning ? inputs_count : guide_input); ++i) {
-    loaded |= acts(c[i], 0);
-    varies |= acts(c[i], 1);
+  turning = guided && is_turning(c);
+  for (const auto& polynomial : c) {
+    loaded |= acts(polynomial, 0);
+    varies |= acts(polynomial, 1);
   }
   braked = acts(c[brake_input], 0);
 }
@@ -88,28 +90,21 @@ bool Inputs::change_at(double t, double rounding, const Polynomials& asked) cons
 }
 
 void Inputs::stay(double t, Polynomials& asked) const {
-  const auto hold = [&](int i) {
+  for (int i = 0; i < inputs_count; ++i) {
     std::fill_n(asked[i] + 1, max_order, 0.0);
     asked[i][0] = value_at(c[i], t - origin);
-  };
-  for (int i = 0; i < guide_input; ++i) hold(i);
-  for (int i = guide_input; i < count; ++i) hold(i);
+  }
   asked[brake_input][0] = std::fmax(asked[brake_input][0], 0);  // like any brake that is set
 }
 
 int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   int found = 0;
-  const auto add = [&](const double* polynomial) {
+  for (const auto& polynomial : c) {
     double zeros[2];
     for (int k = zeros_of_slope(polynomial, zeros); k > 0; --k) {
       const double t = origin + zeros[k - 1];
       if (t > t_lo && t < t_hi) instants[found++] = t;
     }
-  };
-  for (int i = 0; i < count; ++i) add(c[i]);
-  for (int i = guide_input; i < count; ++i) {  // their slopes act too
-    const double slope[] = {c[i][1], 2 * c[i][2], 3 * c[i][3], 0};
-    add(slope);
   }
   std::sort(instants, instants + found);
   return found;

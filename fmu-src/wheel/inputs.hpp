@@ -11,11 +11,14 @@
 namespace wheel {
 
 inline constexpr int inputs_count = 9, brake_input = 6, guide_input = 7, max_order = 3,
-                     most_extremes = 2 * inputs_count + inputs_count - guide_input;
+                     most_extremes = inputs_count * (max_order - 1);
 
 inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
+
+// Whether a rate of the carrier or one of its derivatives is not zero.
+bool is_turning(const Polynomials& inputs);
 
 // The load (out) at tau, s, from the origin, and its rate there: a brake at zero can only be put on. `turning`: the
 // carrier's inputs act.
@@ -40,8 +43,7 @@ struct Inputs {
   void set_load_at(double t, WheelLoad& load) const { set_load(c, turning, t - origin, load); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;
-  // Instants strictly inside (t_lo, t_hi), ascending, at which an input, or the slope of a carrier's, has an extreme;
-  // returns their number.
+  // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
   int extremes(double t_lo, double t_hi, double* instants) const;
   // The first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a corner, s;
   // infinite where there is none.

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "guide.hpp"
-
 namespace wheel {
 namespace {
 
@@ -53,8 +51,7 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   apply_loads(setup, road_asked(demand), t, demand.inputs, now);
-  if (setup.turns())
-    turn_carrier(setup, now.scene, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), y);
+  if (setup.turns()) turn_carrier(setup, demand, now.scene, false, y);
   now.layered = false;
   decide_contact(setup, t, y, now);
 }
@@ -69,6 +66,28 @@ void apply_loads(const Setup& setup, const Road& road, double t, const Polynomia
   now.scene.guided = setup.guided;
   now.inputs.take_over(t, inputs, setup.turns());
   set_load(inputs, now.inputs.turning, 0, now.scene.load);
+}
+
+void turn_carrier(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
+  const WheelFormulation& f = formulation_of(setup, scene);
+  const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
+  const double* const across = y + f.spin_index - 2;  // the rates across the axle
+  if (psi_dot == 0 && theta_dot == 0 && across[0] == 0 && across[1] == 0) return;
+  WheelKinematics k;
+  f.kinematics(&setup.wheel, y, &k);
+  const double u = f.slip_index < 0 ? 0 : y[f.slip_index], chi = f.slip_index < 0 ? 0 : y[f.slip_index + 1];
+  WheelMotion motion = {k.psi,
+                        k.theta,
+                        k.phi,
+                        starts ? psi_dot : k.psi_dot,
+                        starts ? theta_dot : k.theta_dot,
+                        k.phi_dot,
+                        k.X_O,
+                        k.Y_O,
+                        u * std::cos(chi),
+                        u * std::sin(chi)};
+  if (!starts) wheel_turn(&scene, psi_dot, theta_dot, &motion);
+  set_out(f, setup.wheel, motion, y);
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {

@@ -90,10 +90,9 @@ Shape shape_of(const Demand& demand) {
 bool enter_orbit(Wheel& w) {
   const InForce& now = w.run.in_force;
   const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
-  if (!w.setup.unfolds || acted_on || now.slides()) return false;
-  if (w.setup.guided && w.run.phase == Phase::at_start &&
-      !std::equal(w.run.y, w.run.y + WHEEL_MAX_STATES, w.setup.start))
-    return false;  // the carrier has turned it at the start
+  // a carrier that turned it at the start and not any more
+  const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + WHEEL_MAX_STATES, w.setup.start);
+  if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
   const solver::Problem problem = problem_of(w);

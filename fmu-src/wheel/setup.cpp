@@ -76,10 +76,6 @@ void choose_equations(Setup& setup, const Demand& demand) {
   if (demand.slides) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
-const WheelFormulation& start_formulation(const Setup& setup) {
-  return setup.starts_sliding ? *setup.sliding : *setup.formulation;
-}
-
 }  // namespace
 
 bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
@@ -109,27 +105,19 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
           "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
   require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
           mu_slide);
-  const auto rests = [](const double (&input)[max_order + 1]) { return std::ranges::count(input, 0) == max_order + 1; };
-  const bool stays = std::all_of(demand.inputs + guide_input, demand.inputs + inputs_count, rests);
-  sound &= reporter.check(stays || (v[guided] != 0 && !exchanged),
+  sound &= reporter.check(!is_turning(demand.inputs) || (v[guided] != 0 && !exchanged),
                           "psi_dot_guide, theta_dot_guide = %s, %s rad/s: only the carrier of a guided wheel turns, by "
                           "co-simulation; else they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
   return sound;
 }
 
-void start_at(const Setup& setup, const double* v, double psi_dot, double theta_dot, double* y) {
-  using namespace variable;
-  const WheelFormulation& formulation = start_formulation(setup);
-  const WheelMotion motion = {setup.psi.own,    v[theta_start], setup.phi.own, psi_dot,         theta_dot,
-                              v[phi_dot_start], setup.X_O.own,  setup.Y_O.own, v[slip_x_start], v[slip_y_start]};
-  formulation.start(&setup.wheel, &motion, y);
-  WheelKinematics start;
-  formulation.kinematics(&setup.wheel, y, &start);
-  // omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
-  const double rounding = 4 * std::numeric_limits<double>::epsilon();
-  if (std::fabs(start.omega_z) <= rounding * (std::fabs(start.phi_dot) + std::fabs(start.psi_dot)))
-    formulation.stop_spin(&setup.wheel, y);
+// omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
+void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y) {
+  const double axial = motion.psi_dot * std::cos(motion.theta), rounding = 4 * std::numeric_limits<double>::epsilon();
+  formulation.start(&wheel, &motion, y);
+  if (std::fabs(motion.phi_dot + axial) <= rounding * (std::fabs(motion.phi_dot) + std::fabs(motion.psi_dot)))
+    formulation.stop_spin(&wheel, y);
 }
 
 Setup setup_of(const Demand& demand) {
@@ -155,10 +143,13 @@ Setup setup_of(const Demand& demand) {
   setup.phi = origin(v[phi_start], wheel_less_turns(v[phi_start]));
   setup.X_O = origin(v[X_O_start], 0);
   setup.Y_O = origin(v[Y_O_start], 0);
-  setup.starts_sliding = setup.sliding && (v[slip_x_start] != 0 || v[slip_y_start] != 0);
-  start_at(setup, v, v[psi_dot_start], v[theta_dot_start], setup.start);
+  const WheelMotion motion = {setup.psi.own,    v[theta_start], setup.phi.own, v[psi_dot_start], v[theta_dot_start],
+                              v[phi_dot_start], setup.X_O.own,  setup.Y_O.own, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
-  start_formulation(setup).kinematics(&setup.wheel, setup.start, &start);
+  setup.starts_sliding = setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0);
+  const WheelFormulation& formulation = setup.starts_sliding ? *setup.sliding : *setup.formulation;
+  set_out(formulation, setup.wheel, motion, setup.start);
+  formulation.kinematics(&setup.wheel, setup.start, &start);
   set_scales(setup, start);
   set_error_scales(setup);
   return setup;

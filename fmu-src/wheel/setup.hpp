@@ -78,8 +78,8 @@ struct Setup {
 
 Setup setup_of(const Demand& demand);
 
-// The initial state (out) of a wheel that turns across its axle at these rates, rad/s. `parameters`: of the demand.
-void start_at(const Setup& setup, const double* parameters, double psi_dot, double theta_dot, double* y);
+// The state y (out) of a motion.
+void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y);
 
 // The equations of the contact's mode.
 inline const WheelFormulation& formulation_of(const Setup& setup, const WheelScene& scene) {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <utility>
 
-#include "guide.hpp"
 #include "law.hpp"
 #include "wheel.hpp"
 
@@ -111,8 +111,9 @@ struct Pass {
   }
 };
 
-// In the initial state; an integer or boolean parameter moves nothing. The step is relative to the parameter where it
-// cannot be negative; for an angle, a place or a rate it is relative to the parameter or to 1, whichever is larger.
+// In the initial state, or by a rate of the carrier, which jumps; an integer or boolean parameter moves nothing. The
+// step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is relative to the
+// parameter or to 1, whichever is larger.
 bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
@@ -122,12 +123,14 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
   Reading now;
   const auto move_to = [&](double near_x) {
     w.demand.value(parameter) = near_x;
-    const bool exists = prepare(w, Reporter());
+    const bool exists = has_begun(w.run.phase) || prepare(w, Reporter());
     if (exists) now = Reading(w);
     return exists;
   };
+  const News news = std::exchange(w.demand.news, News::set);
   const bool done = pass.refine(x, scale, now, move_to);
   pass.complete();
+  if (has_begun(w.run.phase)) w.demand.news = news;
   return move_to(set) && done;
 }
 
@@ -153,28 +156,21 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
     for (const unsigned angle : {variable::psi, variable::phi})
       now.y[state_index_of(angle)] = wheel_less_turns(now.y[state_index_of(angle)]);
-  const int state = setup.exchanged ? state_index_of(known) : -1, input = static_cast<int>(known - first_input);
-  const bool guides = state < 0 && input >= guide_input;
-  double guide[] = {w.demand.value(variable::psi_dot_guide), w.demand.value(variable::theta_dot_guide)};
-  double& place = state >= 0 ? now.y[state] : guides ? guide[input - guide_input] : *load_entry(now.scene.load, input);
+  const int state = setup.exchanged ? state_index_of(known) : -1;
+  double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, 0, scales);
-  double h = state >= 0 ? scales[state] : std::fmax(guides ? setup.rate_scale : setup.weight, std::fabs(place));
+  double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
   if (state == f.tilt_index) h *= std::sin(place);
   if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
   const bool begun = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
   const bool turns = now.scene.contact == WHEEL_SLIDES && !begun;  // the loads decide the direction of the slip
-  const Reading given = now;
   const auto move_to = [&](double x) {
     place = x;
-    if (guides) {
-      std::copy_n(given.y, WHEEL_MAX_STATES, now.y);
-      turn_carrier(setup, now.scene, guide[0], guide[1], now.y);
-    }
     if (turns) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
     return true;
   };
-  turns || guides ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
+  turns ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
   pass.complete();
   return true;
 }
@@ -259,9 +255,7 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   if (guides && !w.setup.turns()) return true;
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
-  if (!(parameter || (guides && !has_begun(w.run.phase)) ? take_by_parameter(w, known, pass)
-                                                         : take_at_instant(w, known, pass)))
-    return false;
+  if (!(parameter || guides ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.of(unknowns[k]);
   return true;
 }

@@ -23,18 +23,16 @@ double energy(Reading& now) {
   return wheel_energy(&now.scene.wheel, &whole);
 }
 
-// N, the ground's: along e1 (0) or across it (1).
-double horizontal_force(Reading& now, int axis) {
-  double force[2];
-  wheel_horizontal_force(&now.kinematics(), now.dynamics().lambda, force);
-  return force[axis];
+// Of a vector of fixed axes: along e1 (0) or across it (1).
+double horizontal(Reading& now, const double (&vector)[3], int axis) {
+  double parts[2];
+  wheel_horizontal_force(&now.kinematics(), vector, parts);
+  return parts[axis];
 }
 
-// m/s, of O: along e1 (0) or across it (1).
+// m/s, of O.
 double velocity(Reading& now, int axis) {
-  const WheelKinematics& k = now.kinematics();
-  const double sine = std::sin(k.psi), cosine = std::cos(k.psi);
-  return axis == 0 ? k.X_O_dot * cosine + k.Y_O_dot * sine : k.Y_O_dot * cosine - k.X_O_dot * sine;
+  return horizontal(now, {now.kinematics().X_O_dot, now.kinematics().Y_O_dot, 0}, axis);
 }
 
 // N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1).
@@ -91,8 +89,8 @@ constexpr Access readers[] = {
     {variable::lambda_3, AT(now.dynamics().lambda[2])},
     {variable::X_C, AT(now.setup->X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
     {variable::Y_C, AT(now.setup->Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
-    {variable::lambda_x, AT(horizontal_force(now, 0))},
-    {variable::lambda_y, AT(horizontal_force(now, 1))},
+    {variable::lambda_x, AT(horizontal(now, now.dynamics().lambda, 0))},
+    {variable::lambda_y, AT(horizontal(now, now.dynamics().lambda, 1))},
     {variable::tau, AT(now.dynamics().tau)},
     {variable::tau_brake, AT(brake_moment(now)), nullptr,
      [](const Acting& acting, const Acting& rate) { return wheel_brake_moment_rate(&acting.axle, &rate.axle); }},

@@ -33,8 +33,7 @@ enum Reference : unsigned {
 }  // namespace variable
 
 // F_X F_Y F_Z M_1 M_2 M_3 M_brake psi_dot_guide theta_dot_guide are the last of the stored variables.
-inline constexpr unsigned first_input = variable::F_X, first_guide = variable::psi_dot_guide,
-                          stored_count = variable::X_O, variable_count = variable::count;
+inline constexpr unsigned first_input = variable::F_X, stored_count = variable::X_O, variable_count = variable::count;
 
 enum Formulation : int { automatic_formulation = 1, reduced_formulation, multibody_formulation };
 enum FrictionLaw { exact_law = 1, regularized_law };

@@ -51,12 +51,8 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
-  if (w.setup.turns()) {
-    const double psi_dot = w.demand.value(variable::psi_dot_guide),
-                 theta_dot = w.demand.value(variable::theta_dot_guide);
-    start_at(w.setup, w.demand.parameters, psi_dot, theta_dot, run.y);
-  }
   run.in_force.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
+  if (w.setup.turns()) turn_carrier(w.setup, w.demand, run.in_force.scene, true, run.y);
   apply(w.setup, w.demand, 0, run.y, run.in_force);
   w.demand.news = News::none;
   Reading start(w);

@@ -38,6 +38,12 @@ struct Wheel {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
+// Whether a variable is a rate of a carrier that does not turn.
+inline bool rests(const Wheel& wheel, unsigned variable) {
+  const bool guides = variable >= variable::psi_dot_guide && variable < stored_count;
+  return guides && is_running(wheel.run.phase) && !wheel.setup.turns();
+}
+
 // wheel.cpp: from the parameters to the end.
 
 // The state at the instant reached; writes run.y.

@@ -148,9 +148,6 @@ def values(library: Library) -> Iterator[Case]:
         "psi_dot_guide",
     )
     yield text, answer(carrier, 0.4), ["fmi2SetReal", carrier, 0.4, 0]
-    assert w.set_input_derivatives([carrier], [[0.0], [0.6]]) == DISCARD
-    text = "…: derivative … = … of …: only the carrier of a guided wheel turns, by co-simulation."
-    yield text, w.said(), ["fmi2SetRealInputDerivatives", 2, 0.6, carrier]
 
 
 def calls(library: Library) -> Iterator[Case]:
@@ -176,7 +173,8 @@ def calls(library: Library) -> Iterator[Case]:
     yield "…: value reference … is not ….", answer(rates, [999], 1, [1], [0]), [f"fmi2{rates}", 999, "a real output"]
     text = "…: order … of …: only the first derivative is provided."
     yield text, answer(rates, theta, 1, [2], [0]), [f"fmi2{rates}", 2, "theta"]
-    text, inputs = "…: derivative … = … of …: orders 1 to … and finite values are allowed.", "SetRealInputDerivatives"
+    text, inputs = "…: derivative … = … of …: orders 1 to … and finite values are allowed", "SetRealInputDerivatives"
+    text += ", of a carrier's rate only where it turns: guided, by co-simulation."
     yield text, answer(inputs, force, 1, [4], [2.5]), [f"fmi2{inputs}", 4, 2.5, "F_X", 3]
     yield "…: there is no status of kind ….", answer("GetRealStatus", 1, [0]), ["fmi2GetRealStatus", 1]
     spin = w.by(0.5).get("omega_z")[0]
