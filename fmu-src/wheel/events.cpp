@@ -30,13 +30,16 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !now.layered);
 }
 
+[[gnu::noinline]] double left_while_held(const Setup& setup, const InForce& now, double t, const double* y) {
+  return held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
+}
+
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
   const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin)
-                                        : held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
+    return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
   return -now.scene.load.brake / setup.moment_scale;
 }
 

@@ -155,11 +155,10 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
-Held held_at(const Setup& setup, const WheelScene& scene, const double* y) {
+Held held_at(const Setup& setup, WheelScene scene, const double* y) {
   constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
-  WheelScene trial = scene;
-  trial.friction = held;
-  const WheelDynamics dynamics = dynamics_of(setup, trial, y);
+  scene.friction = held;
+  const WheelDynamics dynamics = dynamics_of(setup, scene, y);
   const double capacity = scene.wheel.s * std::max(dynamics.lambda[2], 0.0) + scene.load.brake;
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};

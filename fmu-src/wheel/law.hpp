@@ -51,7 +51,7 @@ inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.ki
 struct Held {
   double tau, reserve;
 };
-Held held_at(const Setup& setup, const WheelScene& scene, const double* y);
+Held held_at(const Setup& setup, WheelScene scene, const double* y);
 
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.
