@@ -9,4 +9,5 @@ causality = {v.name: v.causality for v in DESCRIPTION.modelVariables}
 (hub,) = tree.iter("Terminal")
 kinds = [causality.get(member.get("variableName")) for member in hub.iter("TerminalMemberVariable")]
 inputs, outputs = kinds.count("input"), kinds.count("output")
-verdict(inputs == 7 and inputs + outputs == len(kinds), f"one terminal, {inputs} inputs and {outputs} outputs")
+every = [*causality.values()].count("input")
+verdict(inputs == every and inputs + outputs == len(kinds), f"one terminal, {inputs} inputs and {outputs} outputs")
