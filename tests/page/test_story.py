@@ -303,6 +303,15 @@ def test_a_drawn_tilt_stays_beside_the_true_one_with_its_mean_error(live, story,
     assert live.evaluate("page.plots.curves[0].sketch") is None
 
 
+def test_a_scene_is_no_secret_though_the_story_had_asked(live):
+    live.evaluate(ASK, 2)
+    live.locator("#live [name=scenes]").click()
+    live.locator("#presets button").first.click()
+    live.evaluate("page.player.pause(); page.live.frame()")
+    assert live.evaluate("[page.live.guess, page.plots.all.some(({secret}) => secret)]") == [None, False]
+    assert live.locator("#critical").is_visible() and "asks" not in live.locator("body").get_attribute("class")
+
+
 def test_a_link_to_a_step_has_the_speed_and_the_view_of_the_step(window, live_file):
     with opened(window, live_file, "step=3") as page:
         assert page.evaluate("[page.player.speed, page.stage.place]") == [0.25, "behind"]

@@ -4,7 +4,7 @@
 // `_start` is left out of names; `M_3=1:-6,1.5:0` are changes at 1 s and 1.5 s; `kept.` precedes the plan of the motion
 // that is kept beside; `body` gives the moments of inertia of a preset one; `step` is a step of the story. What is not
 // there is as at first.
-import {PORTRAITS} from '#diagrams';
+import {PORTRAITS} from '#curves';
 import {variables} from '#dom';
 import {degrees, limitsOf, shownLimits} from '#knobs';
 import {bodies, MOMENTS, momentsOf} from '#mechanics';

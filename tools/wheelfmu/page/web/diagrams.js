@@ -1,11 +1,10 @@
 // All diagrams: the curves over time, and beside them one portrait, chosen by its buttons: the phase portrait, the
 // angular velocity along the carrier axes e2 and e3, or the path of the contact point from above. They share the clock,
 // and keep their axes while the reader pushes the wheel. The future is drawn faintly. Angles in degrees, all else SI.
-import {clearCanvas, colour, make, makeChoice, subscripted} from '#dom';
-import {criticalSpin} from '#mechanics';
-import {before, contactOf, extent} from '#table';
+import {CURVES, PORTRAITS} from '#curves';
+import {clearCanvas, colour, fixed, make, makeChoice, subscripted} from '#dom';
+import {before, extent} from '#table';
 
-const DEGREES = 180 / Math.PI;
 const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels; on the left at the least
 const SMALL = 0.5;                                   // of a unit, below which values are in thousandths
 const MANY = 3;                                      // wheels, whose values still fit beside the title
@@ -14,72 +13,6 @@ const LETTER = 7.5;  // CSS pixels, of a digit below the title, with a share of 
 const BAR = 4;       // CSS pixels, where held or sliding
 const DASHES = [5, 4];
 const FONT = '11px system-ui, sans-serif';
-const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
-
-/** A number's text with the sign of mathematics. */
-const signed = (text) => text.replace('-', '−');
-
-/** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */
-const kind = (symbol, units, columns, what, point, more) => ({symbol, units, columns, what, point, ...more});
-const curve = (symbol, unit, digits, columns, what, values, more) => kind(
-    symbol, ['s', unit], ['time', ...columns], `${what} over time. Click or drag to go there`,
-    ([t, ...all], wheel) => [t, ...values(all, wheel)], {digits, ...more});
-const guided = ({parameters}) => Boolean(parameters.guided);
-/** Whether a wheel is upright until its first slide ends. */
-const upright = ({table: {columns: {time, theta}}, phases: {slides}}) =>
-    time.every((t, i) => t > slides[0][1] || Math.abs(theta[i] - Math.PI / 2) < 1e-3);
-/** Whether the speed of the centre and that of rolling are the subject: of a wheel in its plane. */
-const brakes = (wheel) => guided(wheel) || (wheel.phases.slides.length > 0 && upright(wheel));
-const acts =
-    ({table: {shown}}) => ['M_guide_1', 'M_guide_2'].some((name) => shown[name]?.some((moment) => Math.abs(moment) > 1e-9));
-const moves = (wheels, name) => wheels.some(({table}) => {
-  const [low, high] = extent(table.shown[name]);
-  return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
-});
-/**
- * fits(wheels): whether a curve belongs to these; small: the unit of a thousandth, where the values are small. A second
- * value is dashed.
- */
-const CURVES = [
-  curve(
-      'θ', '°', 1, ['theta'], 'Tilt: angle between axle and vertical; the lean is 90° − θ',
-      ([theta]) => [DEGREES * theta], {fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'theta')}),
-  curve('ω_z', 'rad/s', 3, ['omega_z'], 'Angular velocity about the axle', ([omega]) => [omega], {
-    fits: (wheels) => !wheels.some(brakes),
-    level: (wheel) => (wheel.J_x === wheel.J_y && !wheel.guided ? criticalSpin(wheel) : NaN)
-  }),
-  curve(
-      'v, ┄ −R ω_z', 'm/s', 2, ['X_O_dot', 'Y_O_dot', 'psi', 'theta', 'psi_dot', 'omega_z'],
-      'Speed of the centre along e1, and dashed that of rolling, which is −R ω_z for an upright wheel, R = r_0 + r,',
-      ([X_dot, Y_dot, psi, theta, psi_dot, omega_z], {parameters: {r_0, r}}) =>
-          [X_dot * Math.cos(psi) + Y_dot * Math.sin(psi),
-           r * Math.cos(theta) * psi_dot * Math.sin(theta) - (r_0 + r * Math.sin(theta)) * omega_z],
-      {fits: (wheels) => wheels.some(brakes)}),
-  curve(
-      'N', 'N', 0, ['lambda_3'], 'Normal force of the ground', ([N]) => [N],
-      {small: 'mN', fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'lambda_3')}),
-  curve(
-      'M_guide e_1, ┄ e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
-      'Moment of the wheel carrier on the wheel along e1, and dashed along e2,', (both) => both,
-      {fits: (wheels) => wheels.some((wheel) => guided(wheel) && acts(wheel))}),
-  curve('E', 'J', 2, ['E'], 'Total energy', ([E]) => [E], {small: 'mJ'}),
-];
-/** even: both axes have one scale. */
-export const PORTRAITS = {
-  phase: kind(
-      'θ̇ (θ)', ['°', '°/s'], ['theta', 'theta_dot'],
-      'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
-      (values) => values.map((value) => value * DEGREES),
-      {fits: (wheels) => !wheels.every(guided) || moves(wheels, 'theta')}),
-  spin: kind(
-      'ω_z (ω_2)', ['rad/s', 'rad/s'], ['theta', 'psi_dot', 'omega_z'],
-      'Angular velocity about the axle over that about e2, which points up in the plane of the wheel. ' +
-          'Without friction one curve, run to and fro',
-      ([theta, psi_dot, omega_z]) => [psi_dot * Math.sin(theta), omega_z]),
-  path: kind(
-      'path', ['m', 'm'], POSE, 'Path of the contact point on the ground, from above',
-      (values, {parameters: {r_0}}) => contactOf(r_0, ...values), {even: true}),
-};
 
 /** Round numbers, at most about `count` of them, that span low to high. */
 function ticksOf([low, high], count) {
@@ -247,7 +180,7 @@ class Diagram {
   /** The numbers along the upper axis, [value, text]. */
   get marks() {
     const {ticks, digits} = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
-    return ticks.map((tick) => [tick, signed(tick.toFixed(digits))]);
+    return ticks.map((tick) => [tick, fixed(tick, digits)]);
   }
 
   /** The margin on the left takes the widest of them. */
@@ -300,8 +233,7 @@ class Diagram {
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
-      pen.fillText(
-          signed(tick.toFixed(across.digits)) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
+      pen.fillText(fixed(tick, across.digits) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
     }
     this.drawLevels(pen);
   }
@@ -399,8 +331,7 @@ class Diagram {
     const {many} = this;
     const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
     const least = size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0;
-    const texts = (digits) =>
-        values.map(([value]) => (isFinite(value) ? signed(value.toFixed(digits).replace(/^-([0.]+)$/, '$1')) : '–'));
+    const texts = (digits) => values.map(([value]) => (isFinite(value) ? fixed(value, digits) : '–'));
     let digits = Math.max(0, this.kind.digits - Number(many), least);
     while (many && digits > 0 && LETTER * texts(digits).join(' ').length > this.width) digits -= 1;
     this.values.replaceChildren(...texts(digits).map(

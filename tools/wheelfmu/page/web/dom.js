@@ -29,6 +29,9 @@ export const SUBSCRIPT = /_(crit|guide|max|slide|.)/;
 /** A text such as ω_z or ω_crit as nodes, with its subscript. */
 export const subscripted = (text) => text.split(SUBSCRIPT).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
 
+/** A number with the sign of mathematics, none of a zero. */
+export const fixed = (value, digits) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');
+
 /** A canvas of this size in CSS pixels, cleared, and a pen in CSS pixels. */
 export function clearCanvas(canvas, width, height) {
   const ratio = Math.min(2, devicePixelRatio);

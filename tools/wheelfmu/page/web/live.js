@@ -95,6 +95,7 @@ export class LiveWheel {
 
   /** Takes a plan; label: what its wheel is called. */
   load(plan, label = NAMES[0]) {
+    this.tell();
     this.wheel.label = label;
     this.page.offer(this.page.bodies.length);
     this.page.plots.axis = 'fitted';
@@ -204,7 +205,6 @@ export class LiveWheel {
   /** Shows a state: of a step of the story 0, 1 ..., or (null) of none. */
   apply({plan, kept, show, diagram, view, t}, step) {
     const {page, steps: {[step]: {names, text, question} = {}}} = this;
-    this.tell();
     if (kept) this.load(kept);
     this.keep(Boolean(kept), names?.[1]);
     this.load(plan, names?.[0]);

@@ -1,69 +1,16 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
 import {typed} from '#address';
-import {$, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
+import {setUpBalance} from '#balance';
+import {$, fixed, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
 import {setUpFates} from '#fates';
 import {GRIP, HELD, NOW, shownLimits, START, STEERING, torqueOf, WHEEL} from '#knobs';
-import {balance, bodies, criticalSpin, doubtOf} from '#mechanics';
+import {bodies, criticalSpin, doubtOf} from '#mechanics';
 import {scenes} from '#scenes';
+import {setUpStory} from '#story';
 import {slipOf, tipsByRounding} from '#table';
 
 const NEAR = 10;  // degrees of lean, up to which the critical spin of upright rolling is a measure
-
-/** What the motion says of the reader's guess. */
-function verdictOf({guess, steps, step, page: {wheels, plots: {curves: [tilt]}}}) {
-  const {fates, right} = steps[step].question;
-  if (fates) {
-    const fate = fates[right(...wheels)];
-    return guess.picked === undefined ? '' :
-        fates[guess.picked] === fate  ? `As you guessed: ${fate}` :
-                                        `Not so: ${fate}`;
-  }
-  if (!(tilt.sketch?.length > 1)) return '';
-  const off = tilt.lines[0].points.map(([t, theta]) => Math.abs(tilt.guessed(t) - theta)).filter((error) => error >= 0);
-  return `Your line (dashed) is off by ${
-      (off.reduce((sum, error) => sum + error, 0) / off.length).toFixed(1)}° in the mean.`;
-}
-
-/** The card with the story beside the picture: text, something to try, one step on or back. */
-function setUpStory(live) {
-  const host = $('#story');
-  const [count, back, next, again] =
-      ['.count', '[name=back]', '[name=next]', '[name=again]'].map((place) => $(`#live ${place}`));
-  [back.onclick, next.onclick, again.onclick] = [-1, 1, 0].map((by) => () => live.turn(by));
-  const write = onChange((words) => {
-    const {steps, step, steps: {[step]: {title, attempt}}} = live;
-    const html = [title, words, `<b>Try</b> ${attempt}`];
-    ['h2', '.text', '.try'].forEach((place, i) => ($(place, host).innerHTML = html[i]));
-    count.textContent = `${step + 1} of ${steps.length}`;
-    [back.disabled, next.disabled] = [step === 0, step === steps.length - 1];
-  });
-  const fates = $('.guess', host);
-  const ask = onChange((question) => {
-    const options =
-        question?.fates?.map((textContent, name) => ({name, textContent, title: 'Your guess; then it plays'}));
-    fates.replaceChildren(...options?.map((option) => makeButton(option, () => live.pick(option.name))) ?? []);
-  });
-  const judge = onChange((words) => {
-    $('.verdict', host).hidden = !words;
-    $('.verdict', host).textContent = words;
-  });
-  return () => {
-    const {guess, steps, step} = live;
-    const question = guess && !guess.told ? steps[step].question : null;
-    if (live.open) write(question ? question.text : live.text);
-    ask(question);
-    fates.hidden = !guess?.asks || !question?.fates;
-    judge(guess?.told ? verdictOf(live) : '');
-    $('.try', host).hidden = Boolean(question);
-    document.body.classList.toggle('asks', Boolean(guess?.asks));
-    document.body.classList.toggle('draws', Boolean(guess?.asks && !question?.fates));
-    for (const part of [count, back, next]) part.hidden = !live.open;
-    const apart = live.open && !live.narrated;  // the text describes the step's own motion
-    host.classList.toggle('apart', apart);
-    again.hidden = !apart;
-  };
-}
 
 /** The tabs, story or scenes, and a button for each scene. */
 function setUpScenes(live) {
@@ -268,52 +215,6 @@ function setUpGrip(live) {
         live.slides ?
             `It slides at ${slip} m/s (${along} along, ${across} across); the road gives μ_slide = ${mu_slide} of N.` :
             `Rolling needs μ = ${needed.toFixed(3)} now${mu_max > 0 ? `, of μ_max = ${mu_max}` : ''}.`);
-  };
-}
-
-/** A number with the sign of mathematics, none of a zero. */
-const fixed = (value, digits) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');
-
-const TERMS = [
-  ['weight', 'weight', '−N r_0 cos θ'],
-  ['side', 'side force', 'λ_y Z_O'],
-  ['gyro', 'gyroscopic', '−(J_z ω_z − J_x ψ̇ cos θ) ψ̇ sin θ'],
-  ['sum', 'sum', 'J_x θ̈'],
-];
-
-/** Values in tenths, of which the last is the sum of the others: the largest of them takes what rounding leaves. */
-function tenths(values) {
-  const [sum, ...terms] = values.map((value) => Math.round(10 * value)).reverse();
-  const largest = terms.reduce((best, value, i) => (Math.abs(value) > Math.abs(terms[best]) ? i : best), 0);
-  terms[largest] += sum - terms.reduce((total, value) => total + value, 0);
-  return [...terms.reverse(), sum].map((value) => fixed(value / 10, 1));
-}
-
-/** The moments about e1 as bars beside the picture of what rights the wheel: to the right those that right it. */
-function setUpBalance(live) {
-  const host = $('#balance');
-  const rows = TERMS.map(([className, name, formula]) => {
-    const [bar, number] = [make('i'), make('output')];
-    const words = make(
-        'span', {title: formula.replaceAll('_', '')}, make('b', {}, name), ' ',
-        make('small', {}, ...subscripted(formula)));
-    host.append(make('p', {className}, words, make('span', {className: 'bar'}, bar), number));
-    return {bar, number};
-  });
-  return (wheel) => {
-    host.hidden = !live.drawsBalance;
-    if (host.hidden) return;
-    const at = (name) => live.wheel.table.value(name, live.instant());
-    const moments = balance(wheel, at);
-    const values = TERMS.map(([name]) => moments[name]);
-    const side = Math.cos(at('theta')) < 0 ? -1 : 1;  // a moment along e1 rights a wheel that leans with theta < 90 deg
-    const whole = wheel.m * wheel.g * wheel.r_0;
-    tenths(values).forEach((text, i) => {
-      const {bar, number} = rows[i];
-      const part = Math.max(-0.5, Math.min(0.5, side * values[i] / whole));
-      if (number.textContent !== text) number.textContent = text;
-      Object.assign(bar.style, {left: `${50 + 100 * Math.min(0, part)}%`, width: `${100 * Math.abs(part)}%`});
-    });
   };
 }
 
