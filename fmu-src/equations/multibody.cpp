@@ -85,9 +85,11 @@ Vector3 F_beta(const Multibody& s) {
 }
 
 // Rate at which errors of the constraints decay, 1/s: a few times the rates of the motion itself, so that it is never
-// the stiffest part.
-double decay_rate(const Multibody& s) {
-  const double omega_squared = (s.Q * s.attitude.beta_dot).squaredNorm();
+// the stiffest part. On a wheel carrier the spin tilts nothing, and what turns is the carrier.
+double decay_rate(const Multibody& s, int guided) {
+  const Vector3& beta_dot = s.attitude.beta_dot;
+  double omega_squared = (s.Q * beta_dot).squaredNorm();
+  if (guided) omega_squared = std::fmin(omega_squared, 16 * beta_dot.head<2>().squaredNorm());
   const double gravity = Vector3(s.wheel.g_X, s.wheel.g_Y, s.wheel.g).stableNorm();
   return 5 * std::sqrt(gravity / (s.wheel.r_0 + s.wheel.r) + omega_squared);
 }
@@ -129,7 +131,8 @@ Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
   if (!slides) return now;
   now.d = direction(y);
   now.column.segment<2>(6).setZero();
-  now.column[8] -= decay_rate(now.s) * (now.s.B * now.s.q_dot)[2];  // always: rates and the release agree on N
+  // always: rates and the release agree on N
+  now.column[8] -= decay_rate(now.s, scene.guided) * (now.s.B * now.s.q_dot)[2];
   return now;
 }
 
@@ -225,7 +228,7 @@ template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   Instant now = instant_of(*scene, y, slides);
   const Multibody& s = now.s;
-  const double rate = decay_rate(s);
+  const double rate = decay_rate(s, scene->guided);
   if (!slides) now.column.tail<3>() -= rate * (s.B * s.q_dot);
   const Solution solution = solve(now);
   const double N = solution.unknowns[lambda_3];

@@ -44,6 +44,15 @@ def guided(library: Library, times, inputs: dict | None = None, tolerance: float
 # ---- rolling ----
 
 
+@pytest.mark.parametrize("spin", [10.0, 100.0, 500.0])
+def test_a_fast_spin_costs_the_multibody_form_no_more_steps(library: Library, spin: float) -> None:
+    """The motion is no faster, and neither are the constraints."""
+    runs = [guided(library, [0, 2], None, 1e-8, s=0.003, phi_dot_start=-spin, method=4, formulation=f) for f in (2, 3)]
+    costs = [run.counters["n_rhs"] for run in runs]
+    within(costs[1] / costs[0], 1.5, "evaluations over those of the reduced form")
+    within(abs(runs[1]["X_O"][-1] / runs[0]["X_O"][-1] - 1), 1e-11, "way of the formulations apart, relative")
+
+
 @formulations
 @tilts
 def test_friction_and_brake_together_stop_it_and_hold_it(library: Library, formulation: int, theta: float) -> None:
