@@ -6,10 +6,13 @@ import re
 import runpy
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
+from fontTools.ttLib import TTFont
 from lxml import html
 
 from wheelfmu.fmu.paths import ROOT
@@ -113,3 +116,35 @@ def test_a_step_of_the_story_opens_the_live_page_where_the_site_has_one(live: st
     read(SimpleNamespace(config=SimpleNamespace(html_context={"live": live})), "docs/teaching", source)
     links = re.findall(r'<a href="\.\./live\.html#step=(\d+)">', source[0])
     assert links == (["1", "2", "3", "4", "6", "7", "9", "10"] if live else [])
+
+
+def test_every_glyph_of_every_formula_is_in_the_font_that_the_site_brings(site: Path) -> None:
+    glyphs = TTFont(site / "_static" / "math.woff").getBestCmap()
+    formulas = (part for page in site.rglob("*.html") for part in html.parse(page).iter("math"))
+    used = {sign for part in formulas for sign in part.text_content()}
+    assert {sign for sign in used if not sign.isspace() and ord(sign) not in glyphs} == set()
+    assert "\u02d9" in used and ord("\u2603") not in glyphs  # the dot of a derivative; a partner
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Headless, where the pages are that it serves; their folder can be deleted."""
+    with pytest.importorskip("wheelfmu.page.browser").chromium() as found:
+        yield found
+
+
+def test_the_search_shows_words_about_what_it_found_without_a_server_too(site: Path, browser: Any) -> None:
+    page = browser.new_page()
+    page.goto(f"{(site / 'search.html').as_uri()}?q=nutation")
+    page.wait_for_selector("#search-results .context")
+    found = page.locator("#search-results li").all_inner_texts()
+    words = [text.partition("\n")[2].strip().lower() for text in found]  # beneath the titles
+    assert len(words) > 3 and all(len(text) > 40 for text in words) and sum("nutation" in text for text in words) > 3
+
+
+def test_drawings_turn_dark_with_the_site(site: Path, browser: Any) -> None:
+    for scheme, drawn in (("light", "none"), ("dark", "invert(0.93) hue-rotate(180deg)")):
+        page = browser.new_page(color_scheme=scheme)
+        page.goto((site / "docs" / "physics.html").as_uri())
+        filters = page.eval_on_selector_all("img.drawn", "all => all.map((one) => getComputedStyle(one).filter)")
+        assert len(filters) > 5 and {*filters} == {drawn}

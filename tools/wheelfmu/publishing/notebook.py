@@ -22,7 +22,8 @@ def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     cells = [(cell, cell.source) for cell in notebook.cells]
     for cell, source in cells:
-        cell.source = source.replace("../wheel.fmu", fmu).replace("../results", results).replace("from ipywidgets", "from no_widgets")
+        here = source.replace("../wheel.fmu", fmu).replace("../results", results)
+        cell.source = here.replace("from ipywidgets", "from no_widgets")
     place = {"metadata": {"path": NOTEBOOK.parent}}
     # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
     NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place).execute()
