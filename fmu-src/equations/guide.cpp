@@ -1,4 +1,4 @@
-// A jump of the rates at which a hub carrier turns the wheel: the limit of ever steeper ramps. Of a ramp in which
+// A jump of the rates at which a wheel carrier turns the wheel: the limit of ever steeper ramps. Of a ramp in which
 // omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1

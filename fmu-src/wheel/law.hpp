@@ -13,8 +13,8 @@ void apply(const Setup& setup, const Demand& demand, double t, double* y, InForc
 // Road and inputs, and what follows from them alone. A mu_max set below mu_slide counts for both.
 void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
-// From here on the hub carrier turns at the rates asked for: with a jump, or, at the start, as if it had always turned
-// so. Writes y.
+// From here on the wheel carrier turns at the rates asked for: with a jump, or, at the start, as if it had always
+// turned so. Writes y.
 void turn_carrier(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
 
 // Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel rolls where it can,
