@@ -403,3 +403,25 @@ def test_directional_derivatives_keep_their_digits_on_a_slope_that_is_nearly_a_w
             exact = wheel.jacobian(REACTIONS, LOADS)
             wheel.place(0.1, ODD)  # the partner: another state
             beyond(np.abs(wheel.jacobian(REACTIONS, LOADS) - exact).max(), 1e-4, "derivatives in another state")
+
+
+@pytest.mark.parametrize("theta", [np.pi / 2, 1.2])
+def test_a_carrier_that_turns_by_its_states_has_the_forces_of_one_that_is_steered(
+    library: Library, theta: float
+) -> None:
+    """Some importers perturb every state of a guided wheel, also the rates that stay zero on its own."""
+    outputs = ("lambda_x", "lambda_y", "lambda_3", "M_guide_1", "M_guide_2", "v_x", "v_y", "omega_z_dot")
+    start = {"guided": True, "theta_start": theta, "phi_dot_start": -10 / 0.35}
+    steered = library.wheel().start(**start).put(psi_dot_guide=0.5, theta_dot_guide=0.3)
+    with exchange(library, **start) as wheel:
+        x = wheel.x()
+        x[STATES.index("theta_dot")], x[STATES.index("psi_dot")], x[STATES.index("omega_z")] = steered.get(
+            "theta_dot", "psi_dot", "omega_z"
+        )
+        assert (x[STATES.index("psi_dot")], x[STATES.index("theta_dot")]) == (0.5, 0.3)
+        wheel.place(0.1, x)
+        found, want = np.array(wheel.get(*outputs)), np.array(steered.get(*outputs))
+        within(np.abs(found - want).max(), 1e-11, "forces, moments and rates apart")
+        still = exchange(library, **start)
+        beyond(np.abs(np.array(still.get(*outputs)) - want).max(), 10, "forces and moments of one that does not turn")
+        still.close()
