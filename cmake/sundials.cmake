@@ -1,7 +1,7 @@
 # CVODE from source: fetched once by cargo from the Rust registry (the crate that vendors it), pinned by its SHA-256,
 # built with its own CMake as static, optimised, position-independent code. Alternatives:
-#   -DWHEEL_SUNDIALS_SOURCE=<folder>   a SUNDIALS 7.1.1 source tree you have
-set(WHEEL_SUNDIALS_SOURCE "" CACHE PATH "SUNDIALS 7.1.1 source tree; empty: fetch the pinned one")
+#   -DWHEEL_SUNDIALS_SOURCE=<folder>   a source tree of SUNDIALS 7 that you have
+set(WHEEL_SUNDIALS_SOURCE "" CACHE PATH "Source tree of SUNDIALS 7; empty: fetch the pinned one")
 set(sundials_crate sundials-sys-0.6.2)
 set(sundials_sha256 6fbd1d53481b83fc758406097f07b668bf243945e2b1f7db93a8f997cf6b44c9)
 
