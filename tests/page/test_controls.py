@@ -57,6 +57,14 @@ def test_every_button_has_a_tooltip_and_every_diagram_a_name(either):
     assert len(set(diagrams)) == len(diagrams) > 2 and all(len(name) > 20 for name in diagrams)  # for screen readers
 
 
+def test_a_site_that_shows_the_page_sets_its_colours_and_has_the_only_button_for_them(browser, recorded_file):
+    with opened(window_of(browser, color_scheme="light"), recorded_file) as page:
+        assert page.locator("#theme").is_visible()
+        page.evaluate("postMessage({theme: 'dark'}, '*')")
+        page.wait_for_function("document.documentElement.dataset.theme === 'dark'")
+        assert page.locator("#theme").is_hidden()
+
+
 @pytest.fixture(scope="module")
 def phone(browser) -> BrowserContext:
     """One whose browser encodes no films."""
