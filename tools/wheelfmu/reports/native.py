@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -56,12 +56,18 @@ class Master:
         self.code.load(str(file).encode())
 
     def made(
-        self, values: Values, step: float, steps: int, tolerance: float | None = None, table: Array | None = None
+        self,
+        values: Values,
+        step: float,
+        steps: int,
+        tolerance: float | None = None,
+        table: Array | None = None,
+        varied: Iterable[str] = SINES,
     ) -> Solve:
         """A run, ready to be repeated: its seconds, initial headline outputs and those after each step, counters.
 
-        table: steps x (orders + 1) x the inputs of SINES. With paces, they get the seconds of each step."""
-        inputs = () if table is None else SINES
+        table: steps x (orders + 1) x the inputs that are varied. With paces, they get the seconds of each step."""
+        inputs = () if table is None else tuple(varied)
         table = np.zeros((steps, 1, 0)) if table is None else np.ascontiguousarray(table)
         rows = np.zeros((steps + 1, len(HEADLINE)))
         references = [ffi.new("unsigned[]", [self.references[name] for name in of]) for of in (inputs, HEADLINE)]

@@ -161,6 +161,33 @@ def inputs_linear(report: Report, spin: float) -> Row:
     return inputs_held.measure(report, spin, 1)
 
 
+LEANS: Values = {**slides.UPRIGHT, "theta_start": 1.4, "phi_dot_start": -28.0}
+CARRIED: Values = {**LEANS, "guided": True}
+# Start, the input that follows a sine, and its amplitude.
+VARIED = {
+    "free, M_3": (LEANS, "M_3", 0.5),
+    "guided, M_3": (CARRIED, "M_3", 0.5),
+    "guided, psi_dot_guide": (CARRIED, "psi_dot_guide", 0.5),
+    "guided, theta_dot_guide": (CARRIED, "theta_dot_guide", 0.1),
+}
+
+
+@part(4)
+def steered(report: Report) -> list[Row]:
+    """steps of 1 ms with first derivatives of one input, in turns"""
+    count = 1000
+    costs: dict[str, list[float]] = {}
+    t = 1e-3 * np.arange(count)[:, np.newaxis]
+    for _ in range(1 if report.quick else 5):
+        for name, (values, varied, size) in VARIED.items():
+            table = size * np.stack([np.sin(2 * t), 2 * np.cos(2 * t)], axis=1)
+            solve = report.master.made(values, 1e-3, count, None, table, (varied,))
+            costs.setdefault(name, []).extend(repeated(solve, 0.1)[0])
+    best = {name: 1e6 * min(of) / count for name, of in costs.items()}
+    first = next(iter(best.values()))
+    return [{"wheel": name, "µs per step": cost, "times the first": cost / first} for name, cost in best.items()]
+
+
 # Start, what makes it slide, and the duration, s. The reduced equations are stepped, not unfolded.
 STEPPED: Values = {"formulation": "reduced"}
 ROLLING: Values = {**STEPPED, **slides.UPRIGHT, "phi_dot_start": -20.0}
