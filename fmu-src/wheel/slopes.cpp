@@ -139,38 +139,46 @@ void keep_ground(Reading& now) {
   now.scene.ground = rates_of(*now.setup, now.scene, now.y).N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
-// The law and the sign of N are kept. A brake that is not in use has the law that it would have in use; in model
-// exchange that law waits for an event. Steps are small parts of what each known turns on, those of a load of the whole
-// weight or of the load.
+// A brake that is not in use has the law that it would have in use; in model exchange that law waits for an event.
+void put_brake_in_use(const Wheel& w, Reading& now) {
+  if (w.setup.exchanged || now.scene.friction.kind != WHEEL_FRICTIONLESS) return;
+  InForce used = in_force_now(w, now.y);
+  used.inputs.braked = true;
+  decide_law(w.setup, w.run.t, now.y, used);
+  now.scene.friction = used.scene.friction;
+}
+
+// (state, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the load.
+double size_of(const Setup& setup, const WheelFriction& law, int state, double value) {
+  if (state < 0) return std::fmax(setup.weight, std::fabs(value));
+  double scales[WHEEL_MAX_STATES];
+  scales_at(setup, 0, scales);
+  const bool is_tilt = state == setup.formulation->tilt_index, is_spin = state == setup.formulation->spin_index;
+  if (is_spin && law.kind == WHEEL_REGULARIZED) return std::fmin(scales[state], setup.omega_s);
+  return is_tilt ? scales[state] * std::sin(value) : scales[state];
+}
+
+// (an input or a state) => derivatives by it; the law and the sign of N are kept. Where a slide begins here, the loads
+// decide the direction of the slip.
 bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const Setup& setup = w.setup;
-  const WheelFormulation& f = *setup.formulation;
   Reading now(w);
-  if (known == variable::M_brake && !setup.exchanged && now.scene.friction.kind == WHEEL_FRICTIONLESS) {
-    InForce used = in_force_now(w, now.y);
-    used.inputs.braked = true;
-    decide_law(setup, w.run.t, now.y, used);
-    now.scene.friction = used.scene.friction;
-  }
+  if (known == variable::M_brake) put_brake_in_use(w, now);
   keep_ground(now);
   if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
     for (const unsigned angle : {variable::psi, variable::phi})
       now.y[state_index_of(angle)] = wheel_less_turns(now.y[state_index_of(angle)]);
   const int state = setup.exchanged ? state_index_of(known) : -1;
   double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  double scales[WHEEL_MAX_STATES];
-  scales_at(setup, 0, scales);
-  double h = state >= 0 ? scales[state] : std::fmax(setup.weight, std::fabs(place));
-  if (state == f.tilt_index) h *= std::sin(place);
-  if (state == f.spin_index && now.scene.friction.kind == WHEEL_REGULARIZED) h = std::fmin(h, setup.omega_s);
-  const bool begun = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
-  const bool turns = now.scene.contact == WHEEL_SLIDES && !begun;  // the loads decide the direction of the slip
+  const double size = size_of(setup, now.scene.friction, state, place);
+  const bool slid = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
+  const bool begins = now.scene.contact == WHEEL_SLIDES && !slid;
   const auto move_to = [&](double x) {
     place = x;
-    if (turns) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
+    if (begins) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
     return true;
   };
-  turns ? pass.refine(place, h, now, move_to) : pass.take(stencils[0], place, 1e-3 * h, now, move_to);
+  begins ? pass.refine(place, size, now, move_to) : pass.take(stencils[0], place, 1e-3 * size, now, move_to);
   pass.complete();
   return true;
 }
