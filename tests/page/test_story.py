@@ -134,7 +134,7 @@ def test_friction_stops_the_spin_and_holds_it(live, story):
 
 
 def test_a_held_wheel_nods_and_turns_and_loses_no_energy(live, story):
-    _, turned = numbers(story(7).split("orange band")[1])[:2]
+    _, turned = numbers(story(7).split("orange mark")[1])[:2]
     begin, end = live.evaluate("page.wheels[0].phases.sticks[0]")
     t, energy = column(live, "time"), column(live, "E")
     held = (t >= begin) & (t <= end)

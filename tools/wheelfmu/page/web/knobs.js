@@ -38,7 +38,7 @@ const knob = (name, symbol, unit, what, range) => ({name, symbol, unit, what, ra
 
 export const START = [
   knob('theta_start', 'θ', '°', 'tilt', () => [5, 175, 0.5]),
-  knob('phi_dot_start', 'φ̇', 'rad/s', 'spin', spins),
+  knob('phi_dot_start', 'φ̇', 'rad/s', 'rotation', spins),
   knob('psi_dot_start', 'ψ̇', 'rad/s', 'precession', spins),
   knob('slope', 'α', '°', 'slope', () => [0, 30, 0.5]),
   knob('slope_direction', 'β', '°', 'uphill', () => [-180, 180, 1]),
@@ -59,7 +59,7 @@ export const WHEEL = [
 ];
 /** These act from the present on; those of the wheel carrier on a guided wheel alone. */
 export const NOW = [
-  knob('s', 's', 'm', 'friction', ({r_0, r}) => upTo(roundUp(0.28 * (r_0 + r)))),
+  knob('s', 's', 'm', 'resistance', ({r_0, r}) => upTo(roundUp(0.28 * (r_0 + r)))),
   knob('M_3', 'M₃', 'N m', 'torque', (wheel) => both(roundUp(8 * strength(wheel)))),
   knob('M_brake', 'M_b', 'N m', 'brake', (wheel) => upTo(roundUp(8 * strength(wheel)))),
   knob('psi_dot_guide', 'ψ̇', 'rad/s', 'steering', () => both(1)),

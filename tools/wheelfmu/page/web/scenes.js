@@ -78,7 +78,7 @@ export function chapters(parameters) {
         (wheel, other) => `Upright rolling is stable above ${limit.toFixed(2)} rad/s: below, the weight tips the
           wheel faster than the turn rights it. Both wheels start with half a degree of lean. The faster one sways by at
           most ${lean(other)}°, the slower one comes down by ${lean(wheel)}°.`,
-        'Give the slower wheel more spin φ̇ and find where its swings become small.', {
+        'Give the slower wheel more spin (φ̇) and find where its swings become small.', {
           names: ['10 % slower', '10 % faster'],
           question: {
             text:
@@ -102,20 +102,21 @@ export function chapters(parameters) {
           }
         }),
     step(
-        'Rolling friction stops the spin', 's=0.03&diagram=spin',
-        ({table, phases: {sticks: [[begin]], transitions}}) => `Rolling friction acts about the axle, against the
-          spin, with at most s N. At ${begin.toFixed(2)} s the spin is used up, and friction holds it at zero (orange)
+        'Rolling resistance stops the spin', 's=0.03&diagram=spin',
+        ({table, phases: {sticks: [[begin]], transitions}}) => `Rolling resistance acts about the axle, against the
+          spin, with at most s N. At ${begin.toFixed(2)} s the spin is used up, and it is held at zero (orange)
           until that takes more than s N. In ${table.end.toFixed(0)} s it is held, released or reversed
           ${transitions.length} times.`,
         'Go to the start and drag s down to 0.01 m: the first stop comes later.'),
     step(
         'Held, but nodding and turning', 's=0.03&t=1.1&show=follow+path+axes',
-        (wheel) => `Friction holds the turn about the axle e₃. About the other two axes it gives no moment, so the held
-          wheel nods and turns, as a coin that pivots on a table: in the first orange band,
+        (wheel) =>
+            `Rolling resistance holds the turn about the axle e₃. About the other two axes it has no moment, so the held
+          wheel nods and turns, as a coin that pivots on a table: over the first orange mark,
           ${whileHeld(wheel, 'time').toFixed(2)} s long, its heading turns by ${
-            (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. Friction at rest dissipates
+                (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. A held spin dissipates
           nothing: E stays level while it is held.`,
-        'Play it at a quarter of the speed. Look at E where the band is orange, and where it is not.', {speed: 0.25}),
+        'Look at E over the orange marks, and beside them.', {speed: 0.25}),
     step(
         'Pushed and braked', 'theta=88deg&phi_dot=-4&M_3=1:-4,3:0&M_brake=6:4,7.5:0&diagram=path',
         (wheel) => `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from
@@ -162,7 +163,7 @@ export function chapters(parameters) {
           along a circle instead of a point: the equations no longer hold, and the run ends. It also ends where the wheel
           would lift off (N = 0), where it jams while it slides, and, with a static friction coefficient μ<sub>max</sub> but no
           kinetic one μ<sub>slide</sub>, where rolling would need more.`,
-        'Give it a little spin φ̇. How little lets it come up again?'),
+        'Give it a little spin (φ̇). How little lets it come up again?'),
   ];
 }
 
