@@ -3,7 +3,7 @@
 R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta). SI units.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
@@ -288,6 +288,46 @@ def test_a_course_in_steps_comes_near_to_the_whole_with_its_order(library: Libra
     within(max(abs(found - (1 + order)) for found in orders), 0.25, f"order less {1 + order}")
     within(max(fine), 0.05 if order == 0 else 1e-4, "apart at 200 steps, SI")
     assert order or fine[0] < 1e-11  # the heading is met exactly
+
+
+# What is passed at t, as (value, slope), from the heading, its rate and the rate's slope, psi and the step; the orders
+# of the heading, None where it is exact, of the path and of lambda_y.
+PASSED: dict[str, tuple[Callable[[float, float, float], tuple[float, float]], tuple[int | None, int, int]]] = {
+    "the next heading": (lambda t, psi, h: ((heading(t + h) - psi) / h, 0.0), (None, 2, 1)),
+    "middle": (lambda t, _psi, h: (heading(t + h / 2, 1), 0.0), (2, 2, 1)),
+    "with its slope": (lambda t, _psi, _h: (heading(t, 1), heading(t, 2)), (2, 2, 2)),
+    "held": (lambda t, _psi, _h: (heading(t, 1), 0.0), (1, 1, 1)),
+}
+
+
+def heading(t: float, order: int = 0) -> float:
+    return [0.3 * sin(2 * t) + 0.05 * t, 0.6 * cos(2 * t) + 0.05, -1.2 * sin(2 * t)][order]
+
+
+@pytest.mark.parametrize("way", PASSED)
+def test_a_heading_is_held_without_drift_by_the_rate_that_leads_to_the_next(library: Library, way: str) -> None:
+    passed, orders = PASSED[way]
+    times = np.linspace(0, 1, 2001)
+    path = [simpson(V * np.array([f(heading(t)) for t in times]), x=times) for f in (cos, sin)]
+
+    def errors(h: float) -> tuple[float, float, float]:
+        with library.wheel() as w:
+            w.start(**ROLLS, tolerance=1e-12)
+            off = 0.0
+            for k in range(round(1 / h)):
+                value, slope = passed(k * h, w.get("psi")[0], h)
+                w.give({"psi_dot_guide": (value, slope)}).to((k + 1) * h)
+                off = max(off, abs(w.get("psi")[0] - heading((k + 1) * h)))
+            X, Y, left = w.get("X_O", "Y_O", "lambda_y")
+        return off, float(np.hypot(X - path[0], Y - path[1])), abs(left - M * V * heading(1.0, 1))
+
+    coarse, fine = errors(0.02), errors(0.01)
+    for a, b, order in zip(coarse, fine, orders, strict=True):
+        if order is None:
+            within(b, 1e-14, "heading, rad")
+        else:
+            within(abs(np.log2(a / b) - order), 0.1, f"order less {order}")
+            beyond(b, 1e-6, "error, SI")
 
 
 # ---- springs, power, turns ----
