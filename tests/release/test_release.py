@@ -29,7 +29,7 @@ BILL = ROOT / "fmu-src" / "archive" / "extra" / "org.fmi-standard.fmi-ls-ref" / 
 EIGEN = Path(os.environ.get("Eigen3_DIR", "/usr/share/eigen3/cmake"), "../../../include/eigen3/Eigen/src/Core/util")  # noqa: SIM112
 PINS = {
     "wheel.fmu": (ROOT / "CMakeLists.txt", r"^project\(wheel VERSION ([\d.]+)"),
-    "sundials": (ROOT / "cmake" / "sundials.cmake", r"a SUNDIALS ([\d.]+) source tree"),
+    "sundials": (ROOT / "cmake" / "sundials.cmake", r"^# CVODE ([\d.]+) from source"),
     "eigen": (EIGEN.resolve() / "Macros.h", r"^#define EIGEN_(?:WORLD|MAJOR|MINOR)_VERSION (\d+)"),
     "fmi-headers": (Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h", r"FMI (2[\d.]+\d) "),
     "newlib": (ROOT / "cmake" / "libm.cmake", r"# (\d[\d.]+), Debian 12"),
