@@ -33,6 +33,7 @@ constexpr int about_axle = 5;
 // The state with the matrices that (16)-(24) share.
 struct Multibody {
   const WheelParameters& wheel;
+  double omega_z;  // (21): the sum with phi_dot would round what a narrow regularized law multiplies
   Attitude attitude;
   Vector6 q_dot;
   Matrix3 A = paper::A(attitude), A_dot = paper::A_dot(A, attitude);
@@ -42,6 +43,7 @@ struct Multibody {
 
   Multibody(const WheelParameters& w, const double* y)
       : wheel(w),
+        omega_z(y[spin]),
         attitude{y[psi], y[theta], y[phi], {y[psi_dot], y[theta_dot], y[spin] - y[psi_dot] * std::cos(y[theta])}} {
     q_dot << y[X_O_dot], y[Y_O_dot], y[Z_O_dot], attitude.beta_dot;
     const Matrix3 A_r = A * r.transpose();
@@ -52,8 +54,7 @@ struct Multibody {
   }
 };
 
-// (21): omega_z = [0 0 1][Q]{beta_dot}, and its derivative from the unknowns of (24).
-double omega_z(const Multibody& s) { return s.Q.row(2).dot(s.attitude.beta_dot); }
+// Of (21), omega_z = [0 0 1][Q]{beta_dot}, the derivative from the unknowns of (24).
 double omega_z_dot(const Multibody& s, const Vector9& unknowns) {
   return s.Q.row(2).dot(unknowns.segment<3>(3)) + s.Q_dot.row(2).dot(s.attitude.beta_dot);
 }
@@ -184,7 +185,7 @@ Solution solve(const Instant& now, bool pulls) {
     return {free + unit * tau, tau, now.slides ? K.determinant() * compliance : 0};
   }
   // tau = -(s N + brake) kappa
-  const double kappa = wheel_kappa(&now.scene.friction, omega_z(s)), brake = now.scene.load.brake;
+  const double kappa = wheel_kappa(&now.scene.friction, s.omega_z), brake = now.scene.load.brake;
   column[about_axle] -= brake * kappa;
   Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, mu);
   if (now.scene.guided) guide(now.scene.load, matrix, column);

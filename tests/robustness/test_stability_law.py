@@ -249,3 +249,25 @@ def test_a_rest_in_a_soft_law_depends_on_no_communication_point_and_survives_a_s
     omega_z = np.frombuffer(wheel().start(**start).to(3.0).read(["omega_z"]))[0]
     capacity = 0.003 * 20 * 9.81 + 20  # tanh(omega_z / omega_s) times it balances the torque
     within(abs(omega_z - 3e-3 * np.arctanh(7 / capacity)), 1e-12, "spin at rest, rad/s")
+
+
+def test_the_multibody_form_solves_a_narrow_law_as_the_reduced_one_does(library: Library) -> None:
+    """Random wheels that roll, slide, are held and driven; the spin is a state, not a sum that rounding decides."""
+    random, apart, others = np.random.default_rng(12), [], []
+    for _ in range(60):
+        mu, tolerance = random.uniform(0.1, 0.8), float(10 ** -random.uniform(4.5, 12))
+        rates = {"psi_dot_start": random.normal(0, 2), "theta_dot_start": random.normal(), "phi_dot_start": 0.0}
+        start = {"theta_start": random.uniform(0.7, 2.4), **rates, "s": 10 ** random.uniform(-4, -1)}
+        start |= {"J_x": 0.8, "J_z": 1.6, "M_3": random.normal(0, 5), "M_brake": random.uniform(0, 20)}
+        start |= {"mu_max": mu, "mu_slide": 0.8 * mu} if random.random() < 0.5 else {}
+        law = {"friction_law": 2, "omega_s": 10 ** random.uniform(-11, -8)}
+        values = {name: float(value) for name, value in start.items()} | law
+        runs = [run(library, values | {"formulation": f}, [0, 0.5], tolerance) for f in (3, 2)]
+        assert all(done.status <= OK + 1 or done.end is not None for done in runs), (values, tolerance)
+        within(max(done.counters["n_rhs"] for done in runs), 2e4, "evaluations")
+        if runs[0].end is None and runs[1].end is None:
+            states = [np.array([done[name][-1] for name in ("X_O", "Y_O", "theta", "psi")]) for done in runs]
+            apart.append(np.abs(states[0] - states[1]).max() / tolerance)
+            others.append(np.abs(states[0] - [runs[1][name][0] for name in ("X_O", "Y_O", "theta", "psi")]).max())
+    within(float(np.median(apart)), 1, "formulations apart over the tolerance, median")
+    beyond(float(np.median(others)), 1e-2, "motion, median")
