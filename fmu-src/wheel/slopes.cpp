@@ -93,9 +93,12 @@ struct Pass {
   bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
     constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
     bool done = false;
-    for (double part = 1e-3; part > (done ? finest : finest_first) && !is_exact(scale); part *= 0.1)
+    double part = 1e-3;
+    while (part > (done ? finest : finest_first) && !is_exact(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
                           [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
+      part *= 0.1;
+    }
     return done;
   }
 
