@@ -1,7 +1,14 @@
-"""Runs a module of the package where it is not installed yet: python3 tools MODULE [ARGUMENT...]."""
+"""python3 tools COMMAND [WORD...]: answers --help and typing errors, and writes to file descriptor 3, if it is open, a
+full stop and the words of set-up that the command needs. By the standard library alone, before anything is installed.
+"""
 
-import runpy
+import os
 import sys
+from contextlib import suppress
 
-del sys.argv[0]
-runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
+from wheelfmu.__main__ import needs
+
+words = needs(*sys.argv[1:])
+if words is not None:
+    with suppress(OSError):
+        os.write(3, " ".join((".", *words)).encode())

@@ -118,13 +118,8 @@ def printed(text: str) -> set[tuple[str, ...]]:
 
 
 def accepted(name: str, *arguments: str) -> bool:
-    """Whether the command takes the arguments: by the program that reads them, or by its list of words."""
-    script = (ROOT / "scripts" / name).read_text(encoding="utf-8") if (ROOT / "scripts" / name).is_file() else ""
-    reads, takes = re.search(r"\breads=(\S+)", script), re.search(r'^takes=(?:"([^"]*)"|(\S+))', script, re.MULTILINE)
-    if reads and arguments and "--help" not in arguments:
-        return run(sys.executable, "-m", reads[1], *arguments).returncode == 0
-    known = ((takes[1] or takes[2] or "").split() + ["--help"]) if takes else arguments
-    return bool(script) and {*arguments} <= {*known}
+    """Whether the command takes the arguments."""
+    return (ROOT / "scripts" / name).is_file() and run(sys.executable, "-S", "tools", name, *arguments).returncode == 0
 
 
 COMMANDS = sorted({command for text in PAGES.values() for command in printed(text)})

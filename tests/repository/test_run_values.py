@@ -30,8 +30,24 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
+ASK = """
+import sys
+from wheelfmu.diagrams import start_values
+from wheelfmu.fmu.values import Fault
+try:
+    print(*start_values.command(start_values.values(sys.argv[1:])), sep="\\n")
+except Fault as fault:
+    print(f"run: {fault}", file=sys.stderr)
+    sys.exit(2)
+"""
+
+
 def ask(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "wheelfmu.diagrams.start_values", *arguments]
+    """The arguments of FMPy, one a line, or the refusal."""
+    if "--help" in arguments:
+        command = [sys.executable, ROOT / "tools", "run", *arguments]
+    else:
+        command = [sys.executable, "-c", ASK, *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 

@@ -225,7 +225,7 @@ def test_a_ready_wheel_and_body_give_what_the_command_line_does_not() -> None:
 )
 def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> None:
     """Isolated, so without any installed package, as scripts/help asks before anything is built."""
-    isolated = [sys.executable, "-I", "-S", ROOT / "tools", "wheelfmu.studies.options", *words.split()]
+    isolated = [sys.executable, "-I", "-S", ROOT / "tools", "study", *words.split()]
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"study: {message}") and len(done.stderr.splitlines()) == 1

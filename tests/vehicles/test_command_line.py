@@ -18,7 +18,7 @@ from wheelfmu.vehicles.master import Component, loaded
 from wheelfmu.vehicles.vehicle import Fmus
 
 VEHICLES = ROOT / "examples" / "vehicles"
-READS = [sys.executable, "-S", "-B", str(VEHICLES / "vehicles" / "options.py")]
+READS = [sys.executable, "-S", "-B", str(ROOT / "tools"), "example"]
 PAGES = (*VEHICLES.rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text() for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
@@ -38,7 +38,7 @@ def reads(line: str) -> subprocess.CompletedProcess:
 def test_what_does_not_exist_or_is_not_allowed_gets_one_sentence_before_anything_is_built(case: dict) -> None:
     done = reads(case["line"])
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(case["said"]) and done.stderr.count("\n") == 1
+    assert done.stderr.startswith(f"example: {case['said']}") and done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("name", options.ABOUT)
@@ -63,8 +63,7 @@ def run(fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyt
     monkeypatch.setattr(example, "build_all", lambda: fmus)
 
     def call(line: str) -> tuple[int, str]:
-        monkeypatch.setattr(sys, "argv", ["example", *line.split()])
-        return example.main(), "".join(capsys.readouterr())
+        return example.main(line.split()), "".join(capsys.readouterr())
 
     return call
 

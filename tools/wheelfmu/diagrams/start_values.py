@@ -7,8 +7,7 @@ before anything is installed.
 
 from __future__ import annotations
 
-import sys
-from itertools import chain, takewhile
+from itertools import chain
 
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import (
@@ -33,6 +32,7 @@ from wheelfmu.fmu.values import doubt as doubt  # for the diagrams
 from wheelfmu.fmu.values import variables as described
 
 PAPER_S = 0.03  # m, (29)
+ROWS = 10_000_000  # of a table, at most: some gigabytes
 
 RUN = {
     "stop_time": Variable("stop_time", "run", "Real", "s", "10", "0", "", "End of the runs, above 0"),
@@ -55,15 +55,13 @@ def known() -> dict[str, Variable]:
 
 
 def usage() -> str:
-    """The comment of scripts/run, the presets and all names."""
-    _, *lines = (ROOT / "scripts" / "run").read_text(encoding="utf-8").splitlines()
-    comment = [line[2:] for line in takewhile(lambda line: line.startswith("#"), lines)]
+    """The presets and all names."""
     presets = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
     presets += ["", "Bodies, whose moments of inertia follow from m, r_0 and r:"]
     for name, body in bodies().items():
         presets.append(f"  {name:20s}{body['title']}: J_z = {formula(body['J_z'])}, J_x = J_y = {formula(body['J_x'])}")
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
-    return "\n".join([*comment, "", *presets, "", "The values that can be given:", *rows])
+    return "\n".join([*presets, "", "The values that can be given:", *rows])
 
 
 def values(arguments: list[str]) -> dict[str, str]:
@@ -110,6 +108,9 @@ def values(arguments: list[str]) -> dict[str, str]:
     stop, apart = (float(found.get(name, v.start)) for name, v in RUN.items())
     if apart > stop / 2:
         raise Fault(f"output_interval = {apart:g} s is too long: at least two have to fit into the {stop:g} s.")
+    if stop / apart > ROWS:
+        words = f"stop_time = {stop:g} s with a row every {apart:g} s would give {stop / apart:.0e} rows"
+        raise Fault(f"{words}, more than {ROWS:.0e}: give a longer output_interval.")
     return found
 
 
@@ -132,15 +133,3 @@ def command(found: dict[str, str]) -> list[str]:
     start = {"s": str(PAPER_S)} | {name: x for name, x in found.items() if name != "error"}
     times = [f"--{name.replace('_', '-')}={start.pop(name, v.start)}" for name, v in RUN.items()]
     return [*times, "--output-variables", *outputs, "--start-values", *chain(*start.items())]
-
-
-def main(arguments: list[str]) -> None:
-    try:
-        print(usage() if {"-h", "--help"} & {*arguments} else "\n".join(command(values(arguments))))
-    except Fault as fault:
-        print(f"run: {fault}", file=sys.stderr)
-        sys.exit(2)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

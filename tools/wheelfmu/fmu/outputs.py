@@ -4,14 +4,18 @@ Standard library alone.
 """
 
 import os
+import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 
 from wheelfmu.fmu.values import Fault
+
+PATIENCE = 5.0  # s, before a process says that it waits
 
 
 def check(
@@ -44,11 +48,22 @@ def alone(place: Path) -> Iterator[None]:
     """One process of this machine at a time uses a place; the others wait."""
     import fcntl
 
-    lock = Path(tempfile.gettempdir()) / f"wheel-{sha256(str(place.resolve()).encode()).hexdigest()[:16]}.lock"
-    with lock.open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
-            fcntl.flock(file, fcntl.LOCK_EX)
+    name = sha256(str(place.resolve()).encode()).hexdigest()[:16]
+    with (Path(tempfile.gettempdir()) / f"wheel-{os.getuid()}-{name}.lock").open("w") as file:
+        begin, told = time.monotonic(), False
+        while True:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if not told and time.monotonic() - begin > PATIENCE:
+                    print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
+                    told = True
+                time.sleep(0.1)
         yield
+
+
+def deliver(source: Path, target: Path) -> None:
+    """A copy in its place at once: a process that has the old file open keeps it."""
+    with fresh(target) as new:
+        shutil.copy(source, new)

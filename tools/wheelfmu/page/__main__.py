@@ -1,8 +1,9 @@
-"""Command line of the pages: `recorded FILE.csv...` for result files, `live WASM OUTPUT` for the wheel itself."""
+"""Writes the pages: of result files, python -m wheelfmu.page FILE.csv..., and of the wheel itself."""
 
 import argparse
 import sys
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
@@ -15,19 +16,23 @@ from wheelfmu.page.bodies import Body, ViewError, read_bodies
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
 
 
-def main(kind: str, *words: str) -> None:
-    """Write a page; a fault of the input ends the program with one sentence."""
+def said(write: Callable[[], tuple[Path, int]]) -> int:
+    """Writes a page and names it; a fault of the input is one sentence and exit status 2."""
     try:
-        output, size = live(*words) if kind == "live" else recorded(options.arguments(words))
+        output, size = write()
     except (ViewError, Fault) as fault:
         print(f"view: {fault}", file=sys.stderr)
-        sys.exit(2)
+        return 2
     print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
+    return 0
 
 
-def live(module: str, page: str, overwrite: str = "") -> tuple[Path, int]:
-    wasm, output = Path(module), Path(page)
-    check([output], [wasm], options.is_page, overwrite=overwrite == "--overwrite")
+def main(*words: str) -> int:
+    return said(lambda: recorded(options.arguments(words)))
+
+
+def live(wasm: Path, output: Path, *, overwrite: bool = False) -> tuple[Path, int]:
+    check([output], [wasm], options.is_page, overwrite=overwrite)
     return output, document.write(output, "The wheel, live", [], wasm=wasm)
 
 
@@ -55,4 +60,4 @@ def named(bodies: list[Body], labels: list[str]) -> list[Body]:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    sys.exit(main(*sys.argv[1:]))

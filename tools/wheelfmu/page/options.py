@@ -48,7 +48,3 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     except Fault as fault:
         parser.error(str(fault))
     return given
-
-
-if __name__ == "__main__":
-    arguments()

@@ -1,6 +1,6 @@
 """Runs examples/wheel.ipynb and keeps the outputs of its cells: text and pictures, without run times and progress bars.
 
-python -m publishing.notebook: writes the notebook. The site shows it, and a test runs it again and compares.
+`write` keeps them in the notebook. The site shows it, and a test runs it again and compares.
 """
 
 from __future__ import annotations
@@ -45,6 +45,6 @@ def strip(output: nbformat.NotebookNode) -> nbformat.NotebookNode:
     return output
 
 
-if __name__ == "__main__":
+def write() -> None:
     nbformat.write(executed(), NOTEBOOK)
     print(f"Ran {NOTEBOOK.relative_to(ROOT)}.")

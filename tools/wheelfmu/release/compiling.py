@@ -1,8 +1,4 @@
-"""The project's sources compiled for another platform by PyPI's ziglang: clang, every target's libc, and the linkers.
-
-python -m wheelfmu.release.compiling FOLDER TARGET: WebAssembly in a build folder, wheel_page (the module of the live
-page) or wheel_driver (the release's scenes). It prints the file, which is made anew only where a source has changed.
-"""
+"""The project's sources compiled for another platform by PyPI's ziglang: clang, every target's libc, the linkers."""
 
 from __future__ import annotations
 
@@ -51,7 +47,8 @@ def build(
                 raise SystemExit(f"The build for {platform} failed; the whole log is {log}.")
 
 
-if __name__ == "__main__":
-    folder, made = ROOT / sys.argv[1], sys.argv[2]
+def wasm(folder: Path, made: str) -> Path:
+    """A module in a build folder, made anew only where a source has changed: wheel_page, of the live page, or
+    wheel_driver, the release's scenes."""
     build(folder, WASM, made)
-    print(folder / f"{made}.wasm")
+    return folder / f"{made}.wasm"

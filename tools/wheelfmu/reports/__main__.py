@@ -86,8 +86,7 @@ def stale(name: str, folder: Path) -> bool:
     return differs
 
 
-def main() -> int:
-    options = arguments()
+def main(options: Namespace) -> int:
     names = list(NAMES) if "all" in options.names else list(dict.fromkeys(options.names))
     published = options.publish or options.render or options.check
     folder = RESULTS if published else ROOT / "build" / "report" / ("quick" if options.quick else "latest")
@@ -107,4 +106,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(arguments()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, Parser, suggestion
@@ -23,7 +24,7 @@ def report(name: str) -> str:
     return name
 
 
-def arguments() -> argparse.Namespace:
+def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser = Parser(prog="scripts/report", description=DESCRIPTION)
     parser.add_argument("names", nargs="+", metavar="NAME", type=report, help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
@@ -31,8 +32,4 @@ def arguments() -> argparse.Namespace:
     target.add_argument("--quick", action="store_true", help="fewer cases, into build/report/quick")
     parser.add_argument("--render", action="store_true", help="measure nothing: write pages from the data in docs/")
     parser.add_argument("--check", action="store_true", help="change nothing: exit status 1 where page and data differ")
-    return parser.parse_args()
-
-
-if __name__ == "__main__":
-    arguments()
+    return parser.parse_args(words)

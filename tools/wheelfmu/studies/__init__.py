@@ -8,6 +8,28 @@ docs/studies.md is the guide. `plan` and the command's arguments need Python alo
 zarr, to write its results itself), the caller also xarray.
 """
 
-from .plan import Status, Study, StudyError
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from . import plan
+from .plan import Status, StudyError
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Status", "Study", "StudyError"]
+
+
+class Study(plan.Study):
+    """A study that a program runs."""
+
+    def run(self, out: str | Path, **how: object) -> xarray.Dataset:
+        """Runs the wheels that are missing in `out` (a Zarr folder or its URL) and returns the results.
+
+        overwrite=True discards results of another study that are there; compute.run lists all options.
+        """
+        from .compute import run  # not needed by a worker, and slow to load
+
+        return run(self, out, **how)

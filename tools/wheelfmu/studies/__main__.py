@@ -80,9 +80,16 @@ def conduct(arguments: argparse.Namespace) -> None:
 
 
 def main(argv: list[str] | None = None) -> int:
+    try:
+        return carried_out(arguments_of(argv))
+    except (StudyError, Fault) as fault:
+        print(f"study: {fault}", file=sys.stderr)
+        return 2
+
+
+def carried_out(arguments: argparse.Namespace) -> int:
     """Runs a study; a fault of the study is one line on stderr and exit status 2."""
     try:
-        arguments = arguments_of(argv)
         conduct(arguments)
         return 0
     except (StudyError, Fault) as fault:

@@ -6,7 +6,6 @@ the FMU's modelDescription.xml. Values are in SI units, or have a unit behind th
 
 import argparse
 import re
-import sys
 from pathlib import Path
 
 from wheelfmu.fmu.csv_file import read_table
@@ -160,17 +159,3 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     arguments.preset = preset(arguments.wheel) if arguments.wheel else {}
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
     return arguments
-
-
-def main(argv: list[str] | None = None) -> int:
-    """Checks the arguments; a fault is one line on stderr and exit status 2."""
-    try:
-        arguments_of(argv)
-    except (StudyError, Fault) as fault:
-        print(f"study: {fault}", file=sys.stderr)
-        return 2
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

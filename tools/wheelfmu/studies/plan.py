@@ -24,7 +24,6 @@ from zipfile import BadZipFile, ZipFile
 
 if TYPE_CHECKING:
     import numpy
-    import xarray
 
     from wheelfmu.fmu.values import Variable
 
@@ -225,15 +224,6 @@ class Study:
             raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
         for name, value in plain.items():
             object.__setattr__(self, name, value)
-
-    def run(self, out: str | Path, **how: object) -> xarray.Dataset:
-        """Runs the wheels that are missing in `out` (a Zarr folder or its URL) and returns the results.
-
-        overwrite=True discards results of another study that are there; compute.run lists all options.
-        """
-        from .compute import run  # not needed by a worker, and slow to load
-
-        return run(self, out, **how)
 
     def scaled(self, wheel: str) -> Study:
         """The same study of a preset (examples/wheels.json): a wheel of the paper's shape would move alike.

@@ -78,10 +78,10 @@ def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
     return passed
 
 
-def main() -> int:
+def main(words: list[str]) -> int:
     """One example."""
     try:
-        asked = options.asked(*sys.argv[1:])
+        asked = options.asked(*words)
         fmus, folder = build_all(), RESULTS / asked.vehicle
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(dir=RESULTS, prefix=".new-") as new:
@@ -92,12 +92,5 @@ def main() -> int:
     except ValueError as reason:
         print(reason, file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        print("\nInterrupted.", file=sys.stderr)
-        return 130
     print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
     return not passed
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -7,7 +7,6 @@ the tables of variables. It needs the standard library alone; numbers may carry 
 
 import math
 import re
-import sys
 import tomllib
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -185,21 +184,3 @@ def usage(name: str = "", *arguments: str) -> str:
         start = getattr(run, v.name) if v.name in ("h", "stop") else run[v.name]
         lines.append(f"  {v.name:16s}{v.unit:10s}{start:>9.6g} {v.limit:>4s}  {v.description}")
     return "\n".join(lines)
-
-
-def main() -> int:
-    """Prints the help, or checks the arguments."""
-    arguments = [a for a in sys.argv[1:] if a not in ("-h", "--help")]
-    try:
-        if len(arguments) < len(sys.argv) - 1:
-            print(usage(*arguments))
-        else:
-            asked(*arguments)
-    except Fault as reason:
-        print(reason, file=sys.stderr)
-        return 2
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,0 +1,102 @@
+"""python -P -m wheelfmu COMMAND [WORD...]: a command under scripts/, once what it needs is installed."""
+
+import os
+import signal
+import sys
+from argparse import RawDescriptionHelpFormatter
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault, Parser
+
+
+def module_of(name: str) -> ModuleType:
+    """The module of a command, whose folder is there."""
+    found = import_module(f"wheelfmu.commands.{name}")
+    part = getattr(found, "PART", "")
+    if not (ROOT / part).exists():
+        sys.exit(f"scripts/{name} needs the folder {part}, which is not here.")
+    return found
+
+
+def read(name: str, module: ModuleType, words: list[str]) -> Any:
+    """What is typed after a command; Fault, or argparse's end of the program."""
+    if own := getattr(module, "reads", None):
+        return own(words)
+    form = {"description": module.__doc__, "formatter_class": RawDescriptionHelpFormatter}
+    parser = Parser(prog=f"scripts/{name}", **form)
+    for option, how in getattr(module, "OPTIONS", {}).items():
+        parser.add_argument(option, **how)
+    return parser.parse_args(words)
+
+
+def needs(name: str, *words: str) -> tuple[str, ...] | None:
+    """What a command with these words needs of set-up; none where its help was printed."""
+    try:
+        module = module_of(name)
+        given = read(name, module, [*words])
+        sys.stdout.flush()
+    except Fault as fault:
+        sys.exit(refusal(name, fault))
+    except BrokenPipeError:  # of a reader of the help, such as head, which has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return None
+    except SystemExit as end:
+        if end.code:
+            raise
+        return None
+    return module.needs(given) if hasattr(module, "needs") else getattr(module, "NEEDS", ())
+
+
+def refusal(name: str, fault: Exception) -> int:
+    print(f"{name}: {fault}", file=sys.stderr)
+    return 2
+
+
+class Stop:
+    """Ends a command by KeyboardInterrupt. Where a library takes it for its own, it comes again, unless the command
+    itself finishes what it is at."""
+
+    def __init__(self, *, again: float) -> None:
+        self.number, self.again = 0, again  # s
+
+    def __call__(self, number: int, _frame: object) -> None:
+        self.number = self.number or number
+        signal.setitimer(signal.ITIMER_REAL, self.again)
+        raise KeyboardInterrupt
+
+
+def main(name: str, *words: str) -> int:
+    """Carries a command out; of what it has started nothing is left, also at Ctrl-C or a signal that ends it."""
+    from wheelfmu.commands import processes
+
+    os.environ["MPLBACKEND"] = "Agg"  # whatever a notebook has set for its own figures
+    processes.adopt()
+    module = module_of(name)
+    stop = Stop(again=0.0 if getattr(module, "FINISHES", False) else 1.0)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM):
+        signal.signal(number, stop)
+    try:
+        given = read(name, module, [*words])
+        if not getattr(module, "STAYS", False):
+            os.chdir(ROOT)
+        return int(module.main(given) or 0)
+    except KeyboardInterrupt:
+        print(f"\n{name}: interrupted.", file=sys.stderr)
+        return 128 + stop.number
+    except processes.Failed as failed:
+        return failed.status
+    except Fault as fault:
+        return refusal(name, fault)
+    finally:
+        processes.end_all()
+
+
+if __name__ == "__main__":
+    status = main(*sys.argv[1:])
+    if status > 128:  # nothing that a library has kept delays it, or ends it by the signal
+        sys.stdout.flush()
+        os._exit(status)
+    sys.exit(status)

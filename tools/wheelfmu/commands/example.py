@@ -1,0 +1,40 @@
+"""A vehicle made of FMUs, or the wheel for a control engineer: ./scripts/example NAME [parameter=value ...]. Builds,
+runs with a progress bar, prints a verdict, draws; results/examples/ has all of it. Exit status 1: the manoeuvre
+failed."""
+
+import sys
+
+from wheelfmu.commands import processes
+from wheelfmu.commands.build import build
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+
+PART = "examples/vehicles"
+
+
+def reads(words: list[str]) -> list[str]:
+    from wheelfmu.vehicles import options
+
+    plain = [word for word in words if word not in ("-h", "--help")]
+    if len(plain) < len(words):
+        print(options.usage(*plain))
+        sys.exit()
+    options.asked(*words)
+    return words
+
+
+def needs(given: list[str]) -> list[str]:
+    return ["control" if given[0] == "control" else "vehicles"]
+
+
+def main(given: list[str]) -> int:
+    build("release")
+    with alone(ROOT / "results" / "examples"):
+        if given[0] == "control":
+            program = ROOT / "examples" / "control" / "control.py"
+            return processes.status(
+                sys.executable, "-P", program, "build/release/wheel.fmu", "results/examples/control"
+            )
+        from wheelfmu.vehicles.example import main as run
+
+        return run(given)

@@ -1,0 +1,23 @@
+"""Writes the live page, results/wheel_live.html or the file given. It contains wheel.fmu's sources compiled to
+WebAssembly with the releases' compiler; its trajectories are bit-identical to the released FMU's (docs/page.md)."""
+
+from argparse import Namespace
+from pathlib import Path
+
+from wheelfmu.fmu.paths import ROOT
+
+PART, STAYS, NEEDS = "tools/wheelfmu/page", True, ("page",)
+OPTIONS = {
+    "file": {"nargs": "?", "type": Path, "default": ROOT / "results" / "wheel_live.html", "metavar": "FILE"},
+    "--overwrite": {"action": "store_true", "help": "replaces other files too"},
+}
+
+
+def main(given: Namespace) -> int:
+    from wheelfmu.page.__main__ import live, said
+    from wheelfmu.release import compiling
+
+    if not (ROOT / "build" / "wasm").exists():
+        print("Compiling the wheel to WebAssembly; the first time takes about a minute.", flush=True)
+    wasm = compiling.wasm(ROOT / "build" / "wasm", "wheel_page")
+    return said(lambda: live(wasm, given.file, overwrite=given.overwrite))

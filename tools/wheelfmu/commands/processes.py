@@ -1,0 +1,92 @@
+"""Programs that a command starts, and their end with it. Each has a session of its own, so that Ctrl-C reaches the
+command alone, which then ends them all."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+PR_SET_CHILD_SUBREAPER = 36
+PATIENCE = 5.0  # s, for a program to end by itself
+
+
+class Failed(Exception):
+    """A program has ended with this status, and has said why."""
+
+    def __init__(self, status: int) -> None:
+        self.status = status
+
+
+def adopt() -> None:
+    """Processes whose parent has gone become this one's children."""
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def start(*words: str | Path, **how: Any) -> subprocess.Popen:
+    return subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
+
+
+def status(*words: str | Path, **how: Any) -> int:
+    """Runs a program to its end."""
+    return start(*words, **how).wait()
+
+
+def check(*words: str | Path, **how: Any) -> None:
+    """The same; Failed where it fails."""
+    if code := status(*words, **how):
+        raise Failed(code if code > 0 else 128 - code)
+
+
+def python(module: str, *words: str | Path) -> list[str]:
+    """Words that run a module of this interpreter, whatever is in the current folder."""
+    return [sys.executable, "-P", "-m", module, *map(str, words)]
+
+
+def command(name: str, *words: str | Path) -> list[str]:
+    """Words that run another command."""
+    return python("wheelfmu", name, *words)
+
+
+def side_by_side(*programs: list[str], **how: Any) -> None:
+    """All run to their end; Failed if one has."""
+    codes = [one.wait() for one in [start(*words, **how) for words in programs]]
+    if any(codes):
+        raise Failed(1)
+
+
+def descendants() -> list[int]:
+    """Processes that descend from this one and run."""
+    parents = {}
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            state, parent = entry.read_text(errors="replace").rpartition(")")[2].split()[:2]
+            if state != "Z":
+                parents[int(entry.parent.name)] = int(parent)
+    found = [os.getpid()]
+    for one in found:
+        found += [pid for pid, parent in parents.items() if parent == one]
+    return found[1:]
+
+
+def end_all() -> None:
+    """Ends them: by SIGTERM, after some patience by SIGKILL."""
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM):
+        signal.signal(number, signal.SIG_IGN)
+    begin, told = time.monotonic(), set()
+    while left := descendants():
+        killed = time.monotonic() - begin > PATIENCE
+        for pid in left:
+            with suppress(ProcessLookupError):
+                if killed or pid not in told:
+                    os.kill(pid, signal.SIGKILL if killed else signal.SIGTERM)
+        told |= {*left}
+        with suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        time.sleep(0.02)

@@ -1,0 +1,18 @@
+"""One wheel.fmu for Linux, Windows and macOS, built on this Linux machine (x86-64), tested as far as it can run here.
+Leaves the folder build/wheel-VERSION with the FMU, the site, the notes and their SHA-256 sums, writes
+docs/results/platforms.md, and prints the commands that tag it. Every library is built twice, in two folders; the two
+FMUs must be identical files."""
+
+from argparse import Namespace
+
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+
+NEEDS = ("release", "site", "page")
+
+
+def main(_given: Namespace) -> None:
+    from wheelfmu.release.__main__ import main as release
+
+    with alone(ROOT / "build" / "wheel-release"):
+        release()

@@ -1,0 +1,22 @@
+"""Measures and writes reports: ./scripts/report NAME...|all [OPTION...]."""
+
+import os
+from argparse import Namespace
+
+from wheelfmu.commands.build import build
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.reports import options
+
+NEEDS = ("report",)
+reads = options.arguments
+
+
+def main(given: Namespace) -> int:
+    if not (given.render or given.check):
+        build("release")
+    os.environ["OMP_NUM_THREADS"] = "1"  # before numpy is loaded
+    from wheelfmu.reports.__main__ import main as report
+
+    with alone(ROOT / "docs" / "results"):
+        return report(given)

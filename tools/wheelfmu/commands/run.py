@@ -1,0 +1,131 @@
+"""Builds the FMU, simulates the paper's wheel or a different one, and draws the diagrams.
+
+  ./scripts/run                             the paper's two scenes: without and with rolling friction, s = 0.03 m
+  ./scripts/run v=18km/h                    a vehicle's wheel: upright, forward along X, from the origin
+  ./scripts/run s=0.01 theta_start=60deg    other values, in both scenes; without friction s stays 0
+  ./scripts/run body=torus m=12kg           a homogeneous body, whose moments of inertia follow from m, r_0 and r
+  ./scripts/run slope=12% r_0=30cm          units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
+  ./scripts/run M_brake=20 stop_time=20     an input, which keeps its value; a longer run
+  ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road: the wheel slides where rolling would need more than mu_max
+  ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   its carrier: a locked wheel, its slip
+  ./scripts/run guided=true v=10m/s psi_dot_guide=0.5 mu_max=0.3 mu_slide=0.25   steered: a turn that slides out
+  ./scripts/run coin                        a preset wheel
+  ./scripts/run backspin                    a preset case: a hoop that slides, rolls and comes back
+  ./scripts/run s=0.01 error=methods        error over computing time of every method in these scenes
+
+It installs, builds, leaves wheel.fmu here, simulates both scenes with the fmpy command line, and writes into
+results/: wheel.html, a 3D page of the motion; the diagrams; free.csv and friction.csv. Any parameter or input of
+docs/variables.md can be given, each once. A warning names moments of inertia that no mass within the wheel's outline
+has. The last lines state the error of both runs, judged by another solver (docs/recipes.md).
+
+The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
+packages into .venv, and compiles. cargo-web is among the packages because cargo downloads the pinned source of
+SUNDIALS, the solver.
+
+With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r); all but the last can be
+given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m, Y_O = 0, whatever its
+radii: give X_O_start, Y_O_start.
+
+With a preset, other values scale with the radius R = r_0 + r: s is 0.03 m R / 0.35 m,
+phi_dot_start is -2 rad/s sqrt(0.35 m / R), stop_time is 10 s sqrt(R / 0.35 m). examples/wheels.json has its
+parameters and their sources.
+
+Unless it is given, output_interval, between rows of the tables, is 10 ms, less for a small wheel, and at most a
+fortieth of the start's fastest period, of spin or nutation. The diagrams do not depend on it: they are read from the
+wheel itself.
+"""
+
+import csv
+import sys
+from itertools import islice
+from pathlib import Path
+from subprocess import PIPE, STDOUT
+from tempfile import TemporaryDirectory
+
+from wheelfmu.commands import build, processes
+from wheelfmu.diagrams import start_values
+from wheelfmu.fmu.outputs import alone, deliver
+from wheelfmu.fmu.paths import ROOT
+
+SCENES = {"free": "No rolling friction", "friction": "Rolling friction"}
+PAGE = ROOT / "tools" / "wheelfmu" / "page"
+# Of an earlier run, where this one has none; the paper's figures stay.
+OLD = ("free.*", "friction.*", "wheel.html", "error_time.*", "diagrams.*", "diagram_*")
+
+
+def reads(words: list[str]) -> list[str]:
+    if {"-h", "--help"} & {*words}:
+        print(__doc__.strip(), "", start_values.usage(), sep="\n")
+        sys.exit()
+    start_values.values(words)
+    return words
+
+
+def simulation(*options: str) -> list[str]:
+    """Words that simulate wheel.fmu by FMPy's command line."""
+    return [str(Path(sys.executable).with_name("fmpy")), "simulate", "wheel.fmu", *options]
+
+
+def simulate(new: Path, words: list[str]) -> None:
+    """Both scenes and the error of each, side by side; Failed with FMPy's message where a scene cannot be simulated."""
+    given, running = start_values.command(start_values.values(words)), {}
+    for name, last in {"free": ("s", "0"), "friction": ()}.items():  # the last value of s holds
+        options = ["--output-file", str(new / f"{name}.csv"), *given, *last]
+        with (new / f"{name}.log").open("w") as log:
+            running[name] = processes.start(*simulation(*options), stdout=log, stderr=STDOUT)
+    processes.status(*processes.python("wheelfmu.diagrams.races", new, *words))
+    if failed := [name for name, one in running.items() if one.wait()]:
+        text = (new / f"{failed[-1]}.log").read_text(errors="replace")
+        (ROOT / "build" / "simulation.log").write_text(text)
+        said = [line.removeprefix("[ERROR] ") for line in text.splitlines() if line.startswith("[ERROR] ")]
+        sentence = f'The scene "{failed[-1]}" could not be simulated; build/simulation.log has what FMPy printed.'
+        print(*(said or [sentence]), sep="\n", file=sys.stderr)
+        raise processes.Failed(1)
+
+
+def moves(table: Path) -> bool:
+    """Whether a scene has rows of two instants, which is a motion."""
+    with table.open(newline="", encoding="utf-8") as file:
+        rows = csv.reader(file)
+        times = [float(row[0]) for row in islice(rows, 1, 3)]
+        return any(time > times[0] for time in [*times, *(float(row[0]) for row in rows)])
+
+
+def draw(new: Path, words: list[str]) -> list[str]:
+    """The page and the pictures, side by side; the lines that name them."""
+    moving = {name: label for name, label in SCENES.items() if moves(new / f"{name}.csv")}
+    drawing = [processes.python("wheelfmu.diagrams.paper", new, *words)]
+    if PAGE.exists() and moving:
+        tables = [new / f"{name}.csv" for name in moving]
+        options = [*tables, "--output", new / "wheel.html", "--labels", *moving.values()]
+        drawing.insert(0, processes.python("wheelfmu.page", *options))
+    running = [processes.start(*words, stdout=PIPE, text=True) for words in drawing]
+    said = [one.communicate()[0] for one in running]
+    if any(one.returncode for one in running):
+        raise processes.Failed(1)
+    return "".join(said).replace(f"{new}/", "").splitlines()
+
+
+def main(words: list[str]) -> None:
+    build.build("release")
+    results = ROOT / "results"
+    results.mkdir(exist_ok=True)
+    with alone(results), TemporaryDirectory(dir=results, prefix=".new-") as place:
+        deliver(ROOT / "build" / "release" / "wheel.fmu", ROOT / "wheel.fmu")
+        new = Path(place)
+        simulate(new, words)
+        for name, label in SCENES.items():
+            for line in (new / f"{name}.log").read_text(errors="replace").splitlines():
+                print(f"{label}: {line}")
+        lines = draw(new, words)
+        for error in sorted(new.glob("*.error")):
+            print(error.read_text(encoding="utf-8").splitlines()[0])
+            error.unlink()
+        for old in (path for name in OLD for path in results.glob(name)):
+            old.unlink()
+        for path in new.iterdir():
+            path.replace(results / path.name)
+    print(f"wheel.fmu is ready. In {results}:")
+    print(*(f"  {line}" for line in lines), "  free.csv, friction.csv: the numbers.", sep="\n")
+    if (results / "error_time.png").exists():
+        print("  error_time.png, error_time.csv: error over time, by method.")

@@ -1,0 +1,38 @@
+"""Builds build/site, a folder for any static host: all documents with search and formulas, the reports, the notebook,
+the reference of the C header, and the live page. The site is self-contained; a broken link fails the build."""
+
+import shutil
+from argparse import Namespace
+
+from wheelfmu.commands import processes
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+
+SOURCE, SITE = ROOT / "tools" / "wheelfmu" / "publishing" / "site", ROOT / "build" / "site"
+OPTIONS = {
+    "--documents": {
+        "action": "store_true",
+        "help": "without the live page, which is compiled with the releases' compiler",
+    }
+}
+
+
+def live(given: Namespace) -> bool:
+    return not given.documents and (ROOT / "tools" / "wheelfmu" / "page").exists()
+
+
+def needs(given: Namespace) -> list[str]:
+    return ["site", *["page"] * live(given)]
+
+
+def main(given: Namespace) -> None:
+    with alone(SITE):
+        shutil.rmtree(SITE, ignore_errors=True)
+        SITE.mkdir(parents=True)
+        page = SITE / "live.html"
+        if live(given):
+            processes.check(*processes.command("page", page))
+        how = ["-q", "-E", "-n", "-W", "--keep-going", "-j", "auto", "-b", "html"]
+        where = ["-c", SOURCE, "-d", ROOT / "build" / "site-doctrees", "-A", f"live={page if page.exists() else ''}"]
+        processes.check(*processes.python("sphinx", *how, *where, ROOT, SITE))
+    print("The site is build/site; open build/site/index.html, or copy the folder to a host.")

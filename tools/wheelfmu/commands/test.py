@@ -1,0 +1,77 @@
+"""Every check and test: formatting, lint and clang-tidy; warnings as errors; all tests, those of the core again as on
+a processor without AVX2 and FMA; the contract tests and a minute of fuzzing under the sanitizers. Exit status 0 only
+if all passed. A fresh checkout takes about a quarter of an hour on two cores.
+
+  ./scripts/test          everything
+  ./scripts/test quick    after each change: lint, the release build, the contract and all numerical tests
+"""
+
+import os
+import platform
+import sys
+import time
+from argparse import Namespace
+from subprocess import STDOUT, check_output
+
+from wheelfmu.commands import processes
+from wheelfmu.fmu.paths import ROOT
+
+OPTIONS = {"quick": {"nargs": "?", "choices": ["quick"], "help": "see above"}}
+CORE = [
+    f"tests/{name}"
+    for name in ["contract", "equations", "exchange", "orbit", "physics", "reference", "robustness", "solver"]
+]
+RELEASE = processes.command("build", "release", "-DCMAKE_COMPILE_WARNING_AS_ERROR=ON")
+BEGIN = time.monotonic()
+
+
+def needs(given: Namespace) -> list[str]:
+    """Everything that any step needs is installed before the first."""
+    return ["check" if given.quick else "test"]
+
+
+def step(text: str) -> None:
+    print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
+
+
+def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = "release", **env: str) -> None:
+    """Tests of one group (xdist_group) run in turn in one process, and share what they prepare."""
+    count = str((os.cpu_count() or 1) + workers)
+    pytest = processes.python("pytest", "-q", "-n", count, "--dist", "loadgroup", *words)
+    processes.check(*on, *pytest, env=os.environ | {"WHEEL_BUILD": str(ROOT / "build" / build)} | env)
+
+
+def main(given: Namespace) -> None:
+    if given.quick:
+        step("formatting, lint, and the release build")
+        processes.side_by_side(processes.command("lint"), RELEASE)
+        step("tests of the core")
+        tests(*CORE)
+        step("done")
+        print("The quick checks passed; ./scripts/test runs all of them.")
+        return
+    step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
+    processes.side_by_side(processes.command("build", "asan"), RELEASE)
+    processes.side_by_side(processes.command("tidy"), processes.command("lint"))
+
+    step("all tests, and beside them a minute of fuzzing")
+    fuzzed, seconds = ROOT / "build" / "fuzz.out", os.environ.get("WHEEL_FUZZ_SECONDS", "60")
+    with fuzzed.open("w") as file:
+        fuzzing = processes.start(*processes.command("fuzz", seconds), stdout=file, stderr=STDOUT)
+        tests("tests", workers=1)  # some wait
+        code = fuzzing.wait()
+    print(fuzzed.read_text(errors="replace"), end="", file=sys.stderr if code else sys.stdout)
+    if code:
+        raise processes.Failed(1)
+
+    step("the tests of the core as on a processor without AVX2 and FMA")
+    tests(*CORE, on=("tests/other_machine",))
+
+    step("the contract under address and undefined-behaviour sanitizers")
+    name = f"libclang_rt.asan-{platform.machine()}.so"
+    runtime = check_output(["clang-19", f"-print-file-name={name}"], text=True).strip()
+    memory = ["tests/contract", "tests/robustness/test_allocations.py"]
+    tests("-m", "not local", *memory, build="asan", ASAN_OPTIONS="detect_leaks=0", LD_PRELOAD=runtime)
+
+    step("done")
+    print("All checks and tests passed.")

@@ -1,0 +1,14 @@
+"""A 3D page of any result of the FMU, one offline file: ./scripts/view FILE.csv... (docs/page.md)."""
+
+from argparse import Namespace
+
+from wheelfmu.page import options
+
+PART, STAYS = "tools/wheelfmu/page", True
+reads = options.arguments
+
+
+def main(given: Namespace) -> int:
+    from wheelfmu.page.__main__ import recorded, said
+
+    return said(lambda: recorded(given))
