@@ -119,7 +119,8 @@ def printed(text: str) -> set[tuple[str, ...]]:
 
 def accepted(name: str, *arguments: str) -> bool:
     """Whether the command takes the arguments."""
-    return (ROOT / "scripts" / name).is_file() and run(sys.executable, "-S", "tools", name, *arguments).returncode == 0
+    reads = run(sys.executable, "-S", "tools", name, *arguments) if arguments else None
+    return (ROOT / "scripts" / name).is_file() and not (reads and reads.returncode)
 
 
 COMMANDS = sorted({command for text in PAGES.values() for command in printed(text)})
