@@ -43,7 +43,11 @@ function(fetch_sundials source_dir)
   endif()
   # Named from here: under the locale C an archive in a folder of other letters than ASCII is not opened.
   file(RELATIVE_PATH crate ${new} ${crate})
-  execute_process(COMMAND ${CMAKE_COMMAND} -E tar xf ${crate} WORKING_DIRECTORY ${new} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E tar xf ${crate}
+    WORKING_DIRECTORY ${new}
+    COMMAND_ERROR_IS_FATAL ANY
+  )
   file(RENAME ${new}/${sundials_crate} ${cache}/${sundials_crate})
   file(REMOVE_RECURSE ${new})
 endfunction()
