@@ -90,7 +90,7 @@ def image_of_motion(symmetry: Symmetry, run: Run) -> dict[str, NDArray[np.float6
     for name in ("omega_z", "omega_z_dot", "friction_mode", "tau", "tau_brake"):
         out[name] = symmetry.signs[2] * run[name]
     turned = -1 if symmetry.shifts[0] == pi else 1  # e1 points the other way than the image of e1
-    for vector in ("lambda", "slip"):
+    for vector in ("lambda", "slip", "v"):
         out[f"{vector}_x"] = turned * run[f"{vector}_x"]
         out[f"{vector}_y"] = turned * np.linalg.det(symmetry.plane) * run[f"{vector}_y"]
     for axis in (1, 2):
