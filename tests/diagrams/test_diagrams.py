@@ -199,6 +199,7 @@ def test_panels_without_content_are_left_out_and_forces_that_keep_their_values_s
         paper.caption([rolls], [paper.kept(rolls, paper.panels_of([rolls]))], 400.0, 7.5)
     )
     assert shown(scene()) == ["position", "tilt", "rates", "path", "ground"] and paper.kept(scene(), paper.PAPERS) == []
+    assert shown(scene(X_O=0.0)) == ["tilt", "rates", "path", "ground"]
     assert labels(panels.draw_speeds, rolls) == [r"$-R\,\omega_z$ = $v$"]
 
 

@@ -148,3 +148,8 @@ def test_drawings_turn_dark_with_the_site(site: Path, browser: Any) -> None:
         page.goto((site / "docs" / "physics.html").as_uri())
         filters = page.eval_on_selector_all("img.drawn", "all => all.map((one) => getComputedStyle(one).filter)")
         assert len(filters) > 5 and {*filters} == {drawn}
+        page.goto((site / "docs" / "studies.html").as_uri())  # maps keep their colours
+        kinds = page.eval_on_selector_all(
+            ".article-container img", "all => all.map((one) => getComputedStyle(one).filter)"
+        )
+        assert kinds == ["none", drawn, "none"]

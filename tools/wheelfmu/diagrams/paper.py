@@ -74,6 +74,10 @@ def turns(scene: Scene) -> bool:
     return free(scene) and not scene.still
 
 
+def travels(scene: Scene) -> bool:
+    return free(scene) and bool(np.ptp(scene["X_O"]) > 1e-3 * scene.value("r_0"))
+
+
 def tilts(scene: Scene) -> bool:
     return bool(np.ptp(scene["theta"]) > 1e-6)
 
@@ -122,7 +126,7 @@ def straight(scene: Scene) -> bool:
 
 
 PAPERS = (
-    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, free, (1, 4)),
+    Panel("position", r"$X_O(t)$", 57.0, panels.draw_position, travels, (1, 4)),
     Panel("tilt", r"$\theta(t)$", 57.0, panels.draw_tilt, tilts, (2, 5)),
     Panel("rates", r"$\dot\varphi(\dot\psi)$", 75.0, panels.draw_rates, turns, (3, 6)),
 )

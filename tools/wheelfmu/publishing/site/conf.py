@@ -50,7 +50,7 @@ templates_path = ["_templates"]
 html_additional_pages = {"index": "front.html"}
 html_math_renderer = "mathml"
 
-WHITE = (255, 255, 255)
+LINES = 0.7  # of a picture: white between lines; a map has less, and keeps its colours on a dark page
 PANELS = 1.7  # width over height, from which on a picture has panels side by side
 
 # A letter with a subscript in prose, such as r_0, X_O, ω_crit, 1/m_1, and no part of a path; a name of a variable
@@ -118,15 +118,15 @@ def set_symbols(app: Sphinx, document: nodes.document) -> None:
 
 
 def widen(app: Sphinx, document: nodes.document) -> None:
-    """Marks pictures with panels side by side, drawings on white, which turn dark with the page, and cells of prose,
-    which a table must not squeeze beside names that cannot be broken."""
+    """Marks pictures with panels side by side, drawings in lines on white, which turn dark with the page, and cells of
+    prose, which a table must not squeeze beside names that cannot be broken."""
     for image in document.findall(nodes.image):
         path = Path(app.srcdir) / image["uri"]
         if path.suffix == ".png" and path.is_file():
-            picture = Image.open(path).convert("RGB")
+            picture = Image.open(path)
             width, height = picture.size
             image["classes"] += ["panels"] * (width > PANELS * height)
-            image["classes"] += ["drawn"] * (picture.getpixel((0, 0)) == picture.getpixel((0, height - 1)) == WHITE)
+            image["classes"] += ["drawn"] * (sum(picture.convert("L").histogram()[250:]) > LINES * width * height)
         image["classes"] += ["drawn"] * (path.suffix == ".svg")
     for cell in document.findall(nodes.entry):
         if len(cell.astext()) > 45:
