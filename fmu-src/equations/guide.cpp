@@ -3,7 +3,6 @@
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
 // with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1; a brake is too weak for any ramp.
-#include <algorithm>
 #include <cmath>
 
 #include "wheel_equations.h"
