@@ -45,11 +45,12 @@ def recorded_file(scenes, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def live_file() -> Path:
-    (ROOT / "build").mkdir(exist_ok=True)
-    with (ROOT / "build" / "wasm.lock").open("w") as file:  # one process at a time builds the module
+    page = ROOT / "build" / "wheel_live.html"
+    page.parent.mkdir(exist_ok=True)
+    with page.with_name("wasm.lock").open("w") as file:  # one process at a time builds the module
         fcntl.flock(file, fcntl.LOCK_EX)
-        subprocess.run([ROOT / "scripts" / "page", ROOT / "build" / "wheel_live.html"], check=True, capture_output=True)
-    return ROOT / "build" / "wheel_live.html"
+        subprocess.run(["bash", ROOT / "scripts" / "page", page], check=True, capture_output=True)
+    return page
 
 
 @pytest.fixture(scope="session")

@@ -45,6 +45,8 @@ def bounded_memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "local: neither for a release nor under the sanitizers, needs a local build")
+    if hasattr(config, "workerinput"):  # set for this process, not for programs that tests start
+        os.environ.pop("PYTHONSAFEPATH", None)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

@@ -4,13 +4,12 @@ given. It shows its progress; the compiler's output is in build/PRESET.log."""
 import json
 import os
 import re
-import shutil
 import sys
 from subprocess import PIPE, STDOUT
 
 from wheelfmu.commands import processes
 from wheelfmu.fmu.outputs import alone, deliver
-from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.paths import ROOT, without_stale_cache
 from wheelfmu.fmu.values import Fault, suggestion
 
 SOURCES = ("WHEEL_SUNDIALS_SOURCE", "WHEEL_LIBM_SOURCE")
@@ -37,12 +36,11 @@ def needs(given: list[str]) -> list[str]:
 
 def build(preset: str, *options: str) -> None:
     """The folder build/PRESET; Failed if it fails."""
-    log, cache = ROOT / "build" / f"{preset}.log", ROOT / "build" / preset / "CMakeCache.txt"
+    folder = ROOT / "build" / preset
+    log = folder.with_suffix(".log")
     given = [f"-D{name}={os.environ[name]}" for name in SOURCES if os.environ.get(name)]
-    with alone(ROOT / "build" / preset):
-        # CMake's cache holds absolute paths: in a checkout that was moved, renamed or copied the folder is built anew.
-        if not cache.exists() or f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}\n" not in cache.read_text(errors="replace"):
-            shutil.rmtree(cache.parent, ignore_errors=True)
+    with alone(folder):
+        without_stale_cache(folder, ROOT)
         steps = (
             ["--preset", preset, *given, *options],
             ["--build", "--preset", preset, "--parallel", str(os.cpu_count())],

@@ -30,7 +30,7 @@ def main(_given: Namespace) -> None:
         count.unlink()
     which = [f"tests/{name}" for name in (*FOLDERS, *FILES)] + [f"--deselect=tests/{name}" for name in LEFT_OUT]
     pytest = processes.python("pytest", "-q", "-n", str(os.cpu_count()), "-p", "no:cacheprovider", *which)
-    processes.check(*pytest, env=os.environ | {"WHEEL_BUILD": str(folder)})
+    processes.check(*pytest, env=os.environ | {"WHEEL_BUILD": str(folder), **processes.SAFE})
     page = folder / "index.html"
     lines = ["--filter", "fmu-src/.*", "--exclude-throw-branches", "--merge-lines", "--fail-under-line", "95"]
     where = ["--root", ".", "--object-directory", folder, "--html-details", page, "--print-summary"]

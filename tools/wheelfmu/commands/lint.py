@@ -1,43 +1,50 @@
 """Formatting and lint of C, C++, JavaScript, Python, CMake, shell, workflows; types; imports; spelling."""
 
 from argparse import Namespace
-from subprocess import check_output
+from fnmatch import fnmatch
+from subprocess import DEVNULL, check_output
+from typing import Any
 
 from wheelfmu.commands.processes import check
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
 NEEDS = ("check",)
-OPTIONS = {"--fix": {"action": "store_true", "help": "formats"}}
-CMAKE = ("--line-length", "120", "--indent", "2")
-
-
-def files(*words: str) -> list[str]:
-    """What git lists."""
-    return [name for name in check_output(["git", *words], text=True).split("\0") if name]
+OPTIONS = {
+    "--fix": {"action": "store_true", "help": "formats"},
+    "files": {"nargs": "*", "metavar": "FILE", "help": "these alone, without types and imports"},
+}
+GERSEMI = ("gersemi", "--line-length", "120", "--indent", "2")
+RUFF = ("ruff", "check", "-q", "--no-cache")  # its cache misses a folder that becomes a package or ceases to be one
+ELSEWHERE: dict[str, Any] = {"cwd": ROOT / "tools"}  # a module in the current folder would hide a package of its name
 
 
 def main(given: Namespace) -> None:
     if not (ROOT / ".git").exists():
         raise Fault("the files are those that git knows, and this folder is not a git checkout.")
-    listed = "ls-files", "-coz", "--exclude-standard"
-    clang = files(*listed, "*.c", "*.cpp", "*.h", "*.hpp", "*.js")
-    cmake = files(*listed, "*CMakeLists.txt", "*.cmake")
+    found = check_output(["git", "ls-files", "-coz", "--exclude-standard", "--", *given.files], text=True)
+    listed = [name for name in found.split("\0") if (ROOT / name).is_file()]
+
+    def on(patterns: str, *words: str) -> None:
+        """Runs a program on the files of these names, if there are any."""
+        if named := [name for name in listed if any(fnmatch(name, pattern) for pattern in patterns.split())]:
+            check(*words, *named)
+
+    clang, cmake, python = "*.c *.cpp *.h *.hpp *.js", "*CMakeLists.txt *.cmake", "*.py *.ipynb"
     if given.fix:
-        check("clang-format", "-i", *clang)
-        check("gersemi", "-q", "-i", *CMAKE, *cmake)
-        check("ruff", "check", "--no-cache", "--fix", "-q", ".")
-        check("ruff", "format", "-q", ".")
+        on(clang, "clang-format", "-i")
+        on(cmake, *GERSEMI, "-q", "-i")
+        on(python, *RUFF, "--fix")
+        on(python, "ruff", "format", "-q")
         return
-    check("clang-format", "--dry-run", "--Werror", *clang)
-    check("gersemi", "--no-warn-about-unknown-commands", "--check", *CMAKE, *cmake)
-    check(
-        "ruff", "check", "--no-cache", "-q", "."
-    )  # its cache misses a folder that becomes a package or ceases to be one
-    check("ruff", "format", "--check", "-q", ".")
-    check("lint-imports", "--no-cache", stdout=-3)
-    check("mypy", "--no-error-summary")
-    check("shellcheck", "-x", *files("grep", "-lIz", "--untracked", "^#!/usr/bin/env bash"))
-    workflows = sorted((ROOT / ".github" / "workflows").iterdir())
-    check("check-jsonschema", "--quiet", "--builtin-schema", "vendor.github-workflows", *workflows)
-    check("codespell", *files(*listed))
+    on(clang, "clang-format", "--dry-run", "--Werror")
+    on(cmake, *GERSEMI, "--no-warn-about-unknown-commands", "--check")
+    on(python, *RUFF)
+    on(python, "ruff", "format", "--check", "-q")
+    if shell := [name for name in listed if (ROOT / name).read_bytes().startswith(b"#!/usr/bin/env bash\n")]:
+        check("shellcheck", "-x", *shell)
+    on(".github/workflows/*", "check-jsonschema", "--quiet", "--builtin-schema", "vendor.github-workflows")
+    on("*", "codespell")
+    if not given.files:
+        check("lint-imports", "--no-cache", "../pyproject.toml", stdout=DEVNULL, **ELSEWHERE)
+        check("mypy", "--no-error-summary", "--config-file", "../pyproject.toml", ".", "../examples", **ELSEWHERE)

@@ -13,6 +13,7 @@ from typing import Any
 
 PR_SET_CHILD_SUBREAPER = 36
 PATIENCE = 5.0  # s, for a program to end by itself
+SAFE = {"PYTHONSAFEPATH": "1"}  # the processes of pytest-xdist import nothing from the current folder
 
 
 class Failed(Exception):

@@ -38,7 +38,8 @@ def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = 
     """Tests of one group (xdist_group) run in turn in one process, and share what they prepare."""
     count = str((os.cpu_count() or 1) + workers)
     pytest = processes.python("pytest", "-q", "-n", count, "--dist", "loadgroup", *words)
-    processes.check(*on, *pytest, env=os.environ | {"WHEEL_BUILD": str(ROOT / "build" / build)} | env)
+    built = {"WHEEL_BUILD": str(ROOT / "build" / build), **processes.SAFE}
+    processes.check(*on, *pytest, env=os.environ | built | env)
 
 
 def main(given: Namespace) -> None:
@@ -65,7 +66,7 @@ def main(given: Namespace) -> None:
         raise processes.Failed(1)
 
     step("the tests of the core as on a processor without AVX2 and FMA")
-    tests(*CORE, on=("tests/other_machine",))
+    tests(*CORE, on=("bash", "tests/other_machine"))
 
     step("the contract under address and undefined-behaviour sanitizers")
     name = f"libclang_rt.asan-{platform.machine()}.so"
