@@ -148,15 +148,3 @@ def test_fast_straight_rolling_stops_where_phi_alone_has_too_few_digits(wheel) -
     assert w.get("psi", "psi_dot") == [w.get("psi_start")[0], 0.0]
     assert w.step(2e8) == ERROR and "too few digits" in w.sentences[-1]
     within(abs(w.get("phi")[0] / -1e11 - 1), 16 * EPSILON, "angle, relative")
-
-
-@pytest.mark.parametrize("name", ["psi_start", "phi_start"])
-def test_after_many_turns_the_derivatives_by_an_angle_are_those_of_the_first_turn(wheel, name: str) -> None:
-    turns, names = 2 * pi * 10**6, ["X_O_dot", "Y_O_dot", "lambda_1", "lambda_2", "theta_ddot", "psi_ddot"]
-    start = {**THROWN, "J_x": 0.7, "J_y": 1.2}
-    near, far, off = (
-        wheel().initializing(**{**start, name: angle}).jacobian(names, [name])[:, 0]
-        for angle in (0.4, 0.4 + turns, 0.5 + turns)
-    )
-    within(absolute_error(far, near), 64 * turns * EPSILON, "derivatives apart")
-    beyond(absolute_error(off, near), 1e-3, "derivatives at another angle")

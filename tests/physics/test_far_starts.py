@@ -13,6 +13,7 @@ from support.bounds import EPSILON, beyond, within
 from wheelfmu.fmu.driver import OK, FMU2Wheel
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
+from wheelfmu.truth.sliding import SLIDES
 
 TIMES = np.arange(1, 26) * 0.1
 SHAPES = ("theta", "psi_dot", "theta_dot", "phi_dot", "omega_z", "lambda_1", "lambda_2", "lambda_3", "tau", "n_steps")
@@ -85,11 +86,16 @@ def test_derivatives_by_an_angle_of_many_turns_are_those_of_the_angle_at_home(li
     def by_parameter(psi: float) -> np.ndarray:
         return wheel().initializing(psi_start=psi, **pushed).jacobian(["lambda_1", "X_O_dot", "psi"], ["psi_start"])
 
+    def of_a_slide(angle: float) -> np.ndarray:
+        slide = {**SLIDES["thrown"].start, "J_x": 0.7, "J_y": 1.2, "psi_start": angle, "phi_start": angle}
+        names = ["X_O_dot", "Y_O_dot", "lambda_1", "lambda_2", "theta_ddot", "psi_ddot"]
+        return wheel().initializing(**slide).jacobian(names, ["psi_start", "phi_start"])
+
     def in_time(psi: float) -> np.ndarray:
         w = wheel().start(psi_start=psi, **pushed)
         return np.array(w.rates(["lambda_1", "lambda_2"])())
 
-    for slopes in (by_state, by_parameter, in_time):
+    for slopes in (by_state, by_parameter, of_a_slide, in_time):
         for psi in (1e8, 1e11, -7e11):
             near, turned = slopes(home(psi)), slopes(home(psi) + 1e-3)
             size = np.abs(near).max()
