@@ -2,10 +2,10 @@
 
 from argparse import Namespace
 from fnmatch import fnmatch
-from subprocess import DEVNULL, check_output
+from subprocess import PIPE, check_output
 from typing import Any
 
-from wheelfmu.commands.processes import check
+from wheelfmu.commands.processes import Failed, check, start
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
@@ -46,5 +46,8 @@ def main(given: Namespace) -> None:
     on(".github/workflows/*", "check-jsonschema", "--quiet", "--builtin-schema", "vendor.github-workflows")
     on("*", "codespell")
     if not given.files:
-        check("lint-imports", "--no-cache", "../pyproject.toml", stdout=DEVNULL, **ELSEWHERE)
+        imports = start("lint-imports", "--no-cache", "../pyproject.toml", stdout=PIPE, text=True, **ELSEWHERE)
+        if said := imports.communicate()[0] * bool(imports.returncode):
+            print(said)
+            raise Failed(1)
         check("mypy", "--no-error-summary", "--config-file", "../pyproject.toml", ".", "../examples", **ELSEWHERE)

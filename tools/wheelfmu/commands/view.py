@@ -2,10 +2,13 @@
 
 from argparse import Namespace
 
-from wheelfmu.page import options
-
 PART, STAYS = "tools/wheelfmu/page", True
-reads = options.arguments
+
+
+def reads(words: list[str]) -> Namespace:
+    from wheelfmu.page import options
+
+    return options.arguments(words)
 
 
 def main(given: Namespace) -> int:

@@ -1,0 +1,67 @@
+"""What stands in the way of a set-up has one sentence, and what may be deleted is not needed."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from wheelfmu.fmu.paths import copy_checkout
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("set-up")
+    copy_checkout(place)
+    return place
+
+
+def refused(command: list[str | Path], folder: Path, **variables: str) -> str:
+    """The only line that a command prints before it fails."""
+    done = subprocess.run(command, cwd=folder, env=os.environ | variables, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and not done.stdout and done.stderr.count("\n") == 1, done
+    return done.stderr
+
+
+def test_an_older_python_is_named(checkout: Path, tmp_path: Path) -> None:
+    old = tmp_path / "python3"
+    old.write_text('#!/bin/sh\n[ "$1" = --version ] && echo Python 3.10.12 && exit\nexit 1\n')
+    old.chmod(0o755)
+    said = refused(["bash", "scripts/run"], checkout, PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert said.startswith("run: Python 3.11 or later is needed; Python 3.10.12 is the first")
+
+
+def test_a_linked_environment_is_refused_and_keeps_its_files(checkout: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").touch()
+    (checkout / ".venv").symlink_to(tmp_path)
+    said = refused(["bash", "scripts/run"], checkout)
+    (checkout / ".venv").unlink()
+    assert said.startswith("run: .venv is a symbolic link") and (tmp_path / "mine.txt").exists()
+
+
+def test_lint_without_git_is_refused(checkout: Path) -> None:
+    lines = "from pathlib import Path", "from wheelfmu.commands import lint"
+    program = "\n".join([*lines, f"lint.ROOT = Path({str(checkout)!r})", "lint.main(None)"])
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.stderr.rstrip().endswith("the files are those that git knows, and this folder is not a git checkout.")
+
+
+DELETABLE = {
+    "examples/vehicles": ("example",),
+    "examples/studies": ("study",),
+    "examples/control": (),
+    "examples/importer": (),
+    "tools/wheelfmu/page": ("page", "view"),
+}
+
+
+@pytest.mark.parametrize("folder", DELETABLE)
+def test_a_folder_that_can_be_deleted_is_needed_by_its_own_commands_alone(tmp_path: Path, folder: str) -> None:
+    copy_checkout(tmp_path)
+    shutil.rmtree(tmp_path / folder)
+    names = sorted(path.name for path in (tmp_path / "scripts").iterdir())
+    asked = {name: [sys.executable, "-S", "-B", tmp_path / "tools", name, "--help"] for name in names}
+    codes = {name: subprocess.run(words, capture_output=True, check=False).returncode for name, words in asked.items()}
+    assert {name for name, code in codes.items() if code} == {*DELETABLE[folder]}
