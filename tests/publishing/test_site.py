@@ -142,14 +142,12 @@ def test_the_search_shows_words_about_what_it_found_without_a_server_too(site: P
     assert len(words) > 3 and all(len(text) > 40 for text in words) and sum("nutation" in text for text in words) > 3
 
 
-def test_drawings_turn_dark_with_the_site(site: Path, browser: Any) -> None:
+def test_drawings_turn_dark_with_the_site_and_maps_keep_their_colours(site: Path, browser: Any) -> None:
+    read = "all => all.map((one) => getComputedStyle(one).filter)"
     for scheme, drawn in (("light", "none"), ("dark", "invert(0.93) hue-rotate(180deg)")):
         page = browser.new_page(color_scheme=scheme)
         page.goto((site / "docs" / "physics.html").as_uri())
-        filters = page.eval_on_selector_all("img.drawn", "all => all.map((one) => getComputedStyle(one).filter)")
+        filters = page.eval_on_selector_all("img.drawn", read)
         assert len(filters) > 5 and {*filters} == {drawn}
-        page.goto((site / "docs" / "studies.html").as_uri())  # maps keep their colours
-        kinds = page.eval_on_selector_all(
-            ".article-container img", "all => all.map((one) => getComputedStyle(one).filter)"
-        )
-        assert kinds == ["none", drawn, "none"]
+        page.goto((site / "docs" / "studies.html").as_uri())
+        assert page.eval_on_selector_all(".article-container img", read) == ["none", drawn, "none"]
