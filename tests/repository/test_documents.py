@@ -87,7 +87,7 @@ def words(*patterns: str) -> set[str]:
 # Of other programs, and of examples in the text.
 FOREIGN = """CosimLogLevel addConnection carRollingDiscTest createRollingDiscTest rollingCoinPenaltyTest
 fmi_CommunicationStepSize fmi_StopTime fmi_loggingOn frame_a kind_CS load_fmu relTol setReal set_input_derivatives
-I_axis I_long J_hub allocateMemory analyze_mutants der_angles my_study noSetFMUStatePriorToCurrentPoint v_1
+I_axis I_long J_hub allocateMemory analyze_mutants der_angles my_study noSetFMUStatePriorToCurrentPoint
 terminateSimulation"""
 
 

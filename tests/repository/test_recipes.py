@@ -57,9 +57,9 @@ PLACES = {
     ],
 }
 OF_OUTPUTS = {
-    "modelDescription.xml": ['    <ScalarVariable name="theta_ddot"'] * 2,
-    "fmu-src/wheel/variables.cpp": ["};\n\n#undef AT"] * 2,
-    "docs/equations.md": ["\nSome outputs, such as"] * 2,
+    "modelDescription.xml": ['    <ScalarVariable name="theta_ddot"'],
+    "fmu-src/wheel/variables.cpp": ["};\n\n#undef AT"],
+    "docs/equations.md": ["\nSome outputs, such as"],
 }
 UNITS = "  </UnitDefinitions>"
 Blocks = dict[str, list[str]]  # of code, by file
@@ -163,18 +163,12 @@ def limit(fine: Run) -> dict[str, float]:
     return {name: 0.5 * float(fine["lambda_3"].min() + fine["lambda_3"].max())}
 
 
-def test_the_parameter_and_the_output_do_what_the_recipes_say(library: Library, patched: Patched) -> None:
+def test_the_parameter_does_what_its_recipe_says(patched: Patched) -> None:
     def turned(J_z: float, J_hub: float) -> FMU2Wheel:
         return patched.library.wheel().start(J_z=J_z, J_hub=J_hub, s=0.03).to(1.0)
 
     with turned(1.5, 0.25) as wheel, turned(1.75, 0.0) as same, turned(1.5, 0.0) as other:
         assert wheel.bits() == same.bits() != other.bits()
-        (v_1, psi, psi_dot, X_dot, Y_dot), rates = wheel.get("v_1", "psi", "psi_dot", "X_O_dot", "Y_O_dot"), wheel.rates
-        e1, across = np.array([np.cos(psi), np.sin(psi)]), np.array([-np.sin(psi), np.cos(psi)])
-        within(abs(v_1 - e1 @ (X_dot, Y_dot)), 8 * EPSILON, "v_1, m/s")
-        (rate, *accelerations) = rates(["v_1", "X_O_dot", "Y_O_dot"])()
-        within(abs(rate - e1 @ accelerations - psi_dot * across @ (X_dot, Y_dot)), 1e-11, "rate of v_1, m/s2")
-        beyond(abs(rate - e1 @ accelerations), 1e-3, "rate of v_1 in axes that stand still, m/s2")
 
 
 BRAKED = {"s": 0.03, "phi_dot_start": -6.0}
