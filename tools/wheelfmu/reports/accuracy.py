@@ -11,6 +11,7 @@ import numpy as np
 from wheelfmu.truth import cases, measure
 from wheelfmu.truth import exact_motions as exact
 from wheelfmu.truth.closed_forms import upright_deceleration
+from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.orbit import Halves
 from wheelfmu.truth.reference import Start, Wheel
 from wheelfmu.truth.scenes import PAPER as TORUS
@@ -19,7 +20,7 @@ from wheelfmu.truth.scenes import Scene
 from . import plots
 from .page import Report, Row, Tables, part
 from .plots import Sheet, style
-from .truth import columns, headline, headline_of, range_error
+from .truth import columns, headline, headline_of
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 14))
 TABLE_UNIT = 1e-9  # s, last digit of the table of transitions
@@ -66,7 +67,7 @@ def spins(report: Report, spin: float) -> Row:
     start, times = {"theta_start": 1.4, "phi_dot_start": -spin, "keep_contact": True}, np.linspace(0, 1, 101)
     want = headline(Scene(start, 1.0), 101)
     runs = {t: report.library.simulate(times, float(t), **start) for t in ("1e-6", "1e-8", "1e-10")}
-    return {f"at {t}": range_error(columns(run), want) / float(t) for t, run in runs.items()}
+    return {f"at {t}": over_range(columns(run), want) / float(t) for t, run in runs.items()}
 
 
 @part(8, {"tolerance": TOLERANCES[:-1]})
@@ -74,7 +75,7 @@ def long(report: Report, tolerance: float) -> Row:
     """1000 s of the unfolded wheel, against half a nutation of the reference laid end to end"""
     times = np.arange(0.05, 1000, 0.73)
     want = headline_of(Halves(Wheel(), Start()).read(times))
-    return {"error / range": range_error(columns(report.library.simulate([0.0, *times], tolerance))[1:], want)}
+    return {"error / range": over_range(columns(report.library.simulate([0.0, *times], tolerance))[1:], want)}
 
 
 @part(40, {"scene": cases.NAMES})

@@ -18,6 +18,7 @@ import pandas as pd
 from wheelfmu.diagrams import races
 from wheelfmu.fmu.driver import Values
 from wheelfmu.truth import sliding as slides
+from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.problems import PROBLEMS, by_fmu, by_reference, errors
 from wheelfmu.truth.reference import Inputs
 from wheelfmu.truth.scenes import SCENES, Scene, sines
@@ -27,7 +28,7 @@ from .native import Solve, bytes_in_use, ffi, repeated
 from .options import EXAMPLES
 from .page import Report, Row, Tables, number, part
 from .plots import Sheet
-from .truth import Array, headline, range_error
+from .truth import Array, headline
 
 POINTS = 101
 METHODS = ("automatic", "adams", "bdf", "runge_kutta")
@@ -61,7 +62,7 @@ def runs(report: Report, name: str) -> list[Row]:
             try:
                 solve()  # warms up
                 costs, found, counts = repeated(solve, seconds)
-                row |= {"error": range_error(found, want)} | {n: counts.get(n) for n in ("steps", "rhs", "events")}
+                row |= {"error": over_range(found, want)} | {n: counts.get(n) for n in ("steps", "rhs", "events")}
                 solves.append((row, solve, costs))
             except RuntimeError as trouble:
                 row["note"] = str(trouble).split("\n")[0]
@@ -243,7 +244,7 @@ def inputs(report: Report, case: tuple) -> Row:
     want = headline(scene, steps // EVERY + 1, judge, TRUTHS[judge])
     costs, rows, counts = repeated(report.master.made({}, STEP, steps, None, table_of(steps)), 0.05)
     found = {name: counts[name] for name in ("steps", "rhs", "restarts")}
-    return found | {"µs per step": 1e6 * min(costs) / steps, "error / range": range_error(rows[::EVERY], want)}
+    return found | {"µs per step": 1e6 * min(costs) / steps, "error / range": over_range(rows[::EVERY], want)}
 
 
 @part(4, {"scene": {"free": 0, "friction": 1}})

@@ -43,10 +43,3 @@ def stiff(scene: Scene, times: Array) -> Array:
 
 def columns(run: Run) -> Array:
     return np.column_stack([run[name] for name in HEADLINE])
-
-
-def range_error(rows: Array, want: Array) -> float:
-    """Largest difference of a column, relative to its range; infinite where the rows do not match."""
-    if rows.shape != want.shape or not np.isfinite(rows).all():
-        return np.inf
-    return float((np.abs(rows - want).max(axis=0) / np.ptp(want, axis=0)).max())

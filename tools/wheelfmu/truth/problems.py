@@ -5,6 +5,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.reference import Solution, solve
 from wheelfmu.truth.scenes import Scene
@@ -43,8 +44,7 @@ def transitions(name: str) -> list[tuple[float, int]]:
 def errors(name: str, found: Run | Solution) -> tuple[float, float | None]:
     """Largest error of an output relative to its range, and of a transition, s (infinite if one is missing)."""
     want, known = table(name), transitions(name)
-    rows = np.column_stack([found[output][1:] for output in OUTPUTS])
-    error = float((np.abs(rows - want).max(axis=0) / np.ptp(want, axis=0)).max())
+    error = over_range(np.column_stack([found[output][1:] for output in OUTPUTS]), want)
     if not known:
         return error, None
     events = [event for event in found.events if event[0] > 0]
