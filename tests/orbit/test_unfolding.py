@@ -14,6 +14,7 @@ from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.paths import probe
 from wheelfmu.truth.closed_forms import circle_spin, critical_spin
+from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.orbit import Array, Halves, Orbit, energies, headline_of, stepped
 from wheelfmu.truth.reference import Start, Wheel
 
@@ -32,7 +33,7 @@ def error(got: Array, want: Array) -> float:
 
 
 def range_error(got: Array, want: Array) -> float:
-    return float((np.abs(headline_of(got) - headline_of(want)) / np.ptp(headline_of(want), axis=0)).max())
+    return over_range(headline_of(got), headline_of(want))
 
 
 def test_after_1000_s_each_output_is_right_to_a_millionth_of_its_range(library: ctypes.CDLL) -> None:
