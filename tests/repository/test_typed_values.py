@@ -25,7 +25,7 @@ FAULTS = {
         "study --vary s=0,0.1 --set m=12,5",
         "study --vary s=0,0.1 --stop-time 2,5",
         "example car v=18,5",
-        "example axle omega=0,5",
+        "example suspended M_drive=0,5",
         "example balance k_theta=2,5",
         "view motion.csv --r_0 0,3 --r 0,05",
         "view motion.csv --box 1,5 1 1",
@@ -54,7 +54,7 @@ FAULTS = {
         "study --vary keep_contact=true,maybe",
         "study --vary s=0,0.1 --set method=euler",
         "example car path=1.5",
-        "example axle follow=0.5",
+        "example suspended follow=0.5",
         "example car exchange=now",
         "example car manoeuvre=loop",
     ),
@@ -67,7 +67,7 @@ FAULTS = {
         "study --vary s=0,0.1 --set m=-5",
         "example car s=-1",
         "example car slope=95deg",
-        "example axle mu_max=-1",
+        "example suspended mu_max=-1",
         "view motion.csv --slope 95deg",
         "view motion.csv --r_0 -1 --r 0",
         "view motion.csv --box 0 1 1",
@@ -122,7 +122,7 @@ FAULTS = {
         "study --vary s=0,0.1 --stop-time 1 --stop-time 2",
         "example car v=3 v=4",
         "example car manoeuvre=step manoeuvre=lane",
-        "example axle exchange=held exchange=rollback",
+        "example suspended exchange=held exchange=rollback",
         "view motion.csv --title a --title b",
     ),
     "an option that is cut short": (
@@ -168,7 +168,7 @@ def test_a_fault_of_any_kind_is_refused_by_every_command_in_one_sentence_with_st
 
 TAKEN = ("run v=18.5", "run keep_contact=true method=bdf", "run keep_contact=1 formulation=3", "run coin s=1mm")
 TAKEN += ("study --vary formulation=1,multibody --set keep_contact=true --set method=bdf", "study --vary s=0:0.1:3")
-TAKEN += ("example car path=1 v=18.5", "example axle exchange=held", "view motion.csv --slope 12% --r_0 30cm --r 5cm")
+TAKEN += ("example car path=1 v=18.5", "example suspended exchange=held", "view motion.csv --slope 12% --r_0 30cm --r 5cm")
 TAKEN += ("view motion.csv --output thesis.html --overwrite", "report speed --publish")
 
 

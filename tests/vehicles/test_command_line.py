@@ -49,7 +49,7 @@ def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None
         assert options.value(name, f"{parameter}=1") == (parameter, 1.0)
 
 
-@pytest.mark.parametrize(("model", "name", "said"), [("axle", "m_B", ": it must be above 0 kg."), ("wheel", "m", "")])
+@pytest.mark.parametrize(("model", "name", "said"), [("chassis", "m_B", ": it must be above 0 kg."), ("wheel", "m", "")])
 def test_the_unit_refuses_a_value_in_its_own_words(fmus: Fmus, model: str, name: str, said: str) -> None:
     component = Component(model, fmus[model], {name: -1.0})
     with pytest.raises(ValueError, match=f"^{model}: {name} = -1{said}"), loaded(component):
@@ -97,5 +97,5 @@ def test_an_example_is_copied_into_an_empty_folder_by_the_recipe_of_the_document
     (recipe,) = re.findall(r"```\n(project=.*?)```", (VEHICLES / "README.md").read_text(), re.DOTALL)
     recipe = recipe.replace("/path/to/this/checkout", str(ROOT))
     subprocess.run(["bash", "-e", "-c", recipe], cwd=tmp_path, check=True, capture_output=True)
-    with loaded(copied := Component("axle", tmp_path / "build" / "axle.fmu", {"m_B": 100.0})):
-        assert set(copied.variable) >= {"X", "F_X_left"}
+    with loaded(copied := Component("quarter_car", tmp_path / "build" / "quarter_car.fmu", {"m_B": 100.0})):
+        assert set(copied.variable) >= {"X_B", "F_X"}

@@ -1,23 +1,68 @@
-/* Equations of the chassis: a rigid body on one hub (mechanics/vehicle.hpp) and strut per wheel.
+/* Equations of the chassis: a rigid body on one strut and wheel carrier per wheel, which is a guided wheel.fmu.
  *
- * Body axes x forward, y left, z up, origin in the centre of mass B at the height h_B; the hub of wheel i at rest at
- * p = (x_i, y_i, R - h_B). Along x and y of the chassis the hub's bushing holds the wheel; along z the strut, with d
- * the wheel's travel up from rest, e that beyond the free travel, and F_i its share of the weight:
+ * The body has six degrees of freedom: position and velocity of its centre of mass B in fixed axes (Z up), a unit
+ * quaternion, and the angular velocity in body axes (x forward, y left, z up, principal axes of inertia). R turns body
+ * axes to fixed axes. The centre of wheel i at rest is p = (x_i, y_i, R_w - h_B), R_w the wheels' radius.
+ *
+ *   a = R^T (r_O - r_B),  d = a - p,  d_dot = R^T (v_O - v_B) - w x a      displacement of O and its rate, body axes
+ *
+ * Along x and y of the chassis a bushing holds O, f = -k_h d - c_h d_dot; along z the strut does, with F_i its share of
+ * the weight and e the travel beyond the free one:
  *
  *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other end of the bar))
  *
+ * f acts on the wheel, -f on the chassis. The carrier turns with the chassis and the steer angle delta_i to the left: the
+ * axle's direction is n = (sin delta_i, -cos delta_i, 0) in body axes, and the wheel gets its heading and tilt as rates,
+ *
+ *   R n = (sin theta sin psi, -sin theta cos psi, cos theta),   psi_dot_guide = psi' + align (psi - psi_wheel),
+ *
+ * theta_dot_guide likewise; `align` takes back what the communication steps leave. The chassis carries the wheel's moments
+ * M_guide_1 e1 + M_guide_2 e2, tau_brake e3 and the reaction of the drive.
+ *
  * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L
  * from that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta). Drive: M_3 = -share
- * M_drive, taken from the chassis. Brake: the chassis carries its moment, tau_brake of the wheel. Until t_couple the
- * chassis runs on straight and each strut gives F_i alone. */
+ * M_drive. Until t_couple the chassis runs on straight and each strut gives F_i alone. */
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
-#include "vehicle.hpp"
+#include "model.hpp"
 
-enum { at_share = vehicle_derived, at_x_R = at_share + wheel_count, at_L, derived_count };
+using Eigen::Matrix3d, Eigen::Quaterniond, Eigen::Vector3d;
+
+enum { at_r = 0, at_q = 3, at_v = 7, at_w = 10, at_psi = 13 }; /* states; the last is the heading, not wrapped */
+enum { at_g = 0, at_share = 3, at_x_R = at_share + wheel_count, at_L, derived_count };
 static_assert(+derived_count <= +max_derived, "too many wheels");
+
+struct Body {
+  explicit Body(const States& x)
+      : q(x[at_q], x[at_q + 1], x[at_q + 2], x[at_q + 3]),
+        R(q.normalized().toRotationMatrix()),
+        r(x.segment<3>(at_r)),
+        v(x.segment<3>(at_v)),
+        w(x.segment<3>(at_w)) {}
+
+  Quaterniond q;
+  Matrix3d R;
+  Vector3d r, v; /* fixed axes */
+  Vector3d w;    /* body axes */
+};
+
+struct Hub {
+  Vector3d arm, d, d_dot;        /* body axes */
+  Vector3d f = Vector3d::Zero(); /* force on the wheel, body axes */
+  Vector3d M;                    /* moment of the wheel on the chassis, fixed axes */
+  double psi_dot, theta_dot;     /* rates of the carrier, rad/s */
+};
+
+using Hubs = std::array<Hub, wheel_count>;
+
+/* A value of wheel i: a parameter by the name of that of each wheel. */
+static double of_wheel(const double* u, int each, int i) { return u[each + i * wheel_parameters]; }
 
 /* Shares of the weight F_i = p + q x_i + r y_i in balance: sum F_i = m g cos(slope), sum x_i F_i = sum y_i F_i = 0. */
 static void weigh(const double* u, double* share) {
@@ -31,12 +76,16 @@ static void weigh(const double* u, double* share) {
 }
 
 void model_derive(const double* u, double* d) {
-  derive_gravity(u, d);
+  const double downhill = -u[g] * std::sin(u[slope]);
+  d[at_g] = downhill * std::cos(u[slope_direction]);
+  d[at_g + 1] = downhill * std::sin(u[slope_direction]);
+  d[at_g + 2] = -u[g] * std::cos(u[slope]);
   weigh(u, d + at_share);
   double x[2] = {0, 0}, n[2] = {0, 0};
   for (int i = 0; i < wheel_count; ++i) {
     const int steered = of_wheel(u, steer_each, i) > 0.5;
-    x[steered] += of_wheel(u, x_each, i), n[steered] += 1;
+    x[steered] += of_wheel(u, x_each, i);
+    n[steered] += 1;
   }
   if (n[0] == 0 || n[1] == 0) throw std::invalid_argument("Some wheels must be steered, and some not.");
   d[at_x_R] = x[0] / n[0];
@@ -44,7 +93,21 @@ void model_derive(const double* u, double* d) {
   if (d[at_L] == 0) throw std::invalid_argument("The steered wheels must not stand beside the others.");
 }
 
-States model_start(const Now& now) { return standing(now.u, {now.u[X_start], now.u[Y_start], now.u[h_B]}); }
+/* Level, with the heading psi_start, at v_start. */
+States model_start(const Now& now) {
+  const double* u = now.u;
+  States x = States::Zero();
+  x.segment<3>(at_r) << u[X_start], u[Y_start], u[h_B];
+  x[at_q] = std::cos(u[psi_start] / 2);
+  x[at_q + 3] = std::sin(u[psi_start] / 2);
+  x.segment<3>(at_v) << u[v_start] * std::cos(u[psi_start]), u[v_start] * std::sin(u[psi_start]), 0;
+  x[at_psi] = u[psi_start];
+  return x;
+}
+
+struct Steer {
+  double angle, rate; /* rad, rad/s; to the left */
+};
 
 static Steer steering(const Now& now, int i) {
   const double* u = now.u;
@@ -60,43 +123,92 @@ static double strut(const double* u, int i, const Hub& hub) {
   return of_wheel(u, k_each, i) * d + of_wheel(u, c_each, i) * hub.d_dot[2] + std::copysign(u[k_stop] * e * e, d);
 }
 
-Hubs read_hubs(const Now& now, const Body& body) {
+/* Wheel i at its place, under the share of the weight alone. */
+static Hub read_hub(const Now& now, const Body& body, int i) {
+  const double* u = now.u;
+  const double* in = u + X_O_each + i * wheel_inputs; /* X_O Y_O Z_O, their rates, psi theta, M_guide, tau_brake */
+  const double psi = in[6], theta = in[7];
+  const double sp = std::sin(psi), cp = std::cos(psi), st = std::sin(theta), ct = std::cos(theta);
+  const Vector3d e1(cp, sp, 0), e2(-ct * sp, ct * cp, st), e3(st * sp, -st * cp, ct);
+  const Vector3d p(of_wheel(u, x_each, i), of_wheel(u, y_each, i), u[R] - u[h_B]);
+  const Steer steer = steering(now, i);
+  const double sine = std::sin(steer.angle), cosine = std::cos(steer.angle);
+  const Vector3d own(sine, -cosine, 0), n = body.R * own;
+  const Vector3d n_dot = body.R * (body.w.cross(own) + steer.rate * Vector3d(cosine, sine, 0));
+  const double level = n[0] * n[0] + n[1] * n[1];
+  Hub hub;
+  hub.arm = body.R.transpose() * (Vector3d(in) - body.r);
+  hub.d = hub.arm - p;
+  hub.d_dot = body.R.transpose() * (Vector3d(in + 3) - body.v) - body.w.cross(hub.arm);
+  hub.f[2] = -now.d[at_share + i];
+  const double off = std::remainder(std::atan2(n[0], -n[1]) - psi, 2 * std::numbers::pi);
+  hub.psi_dot = (n[0] * n_dot[1] - n[1] * n_dot[0]) / level + u[align] * off;
+  hub.theta_dot = -n_dot[2] / std::sqrt(level) + u[align] * (std::acos(n[2]) - theta);
+  hub.M = -(in[8] * e1 + in[9] * e2 + (in[10] - u[M_drive] * of_wheel(u, drive_each, i)) * e3);
+  return hub;
+}
+
+static Hubs read_hubs(const Now& now, const Body& body) {
   const double* u = now.u;
   Hubs hubs;
+  for (int i = 0; i < wheel_count; ++i) hubs[i] = read_hub(now, body, i);
+  if (!reached(now, t_couple)) return hubs;
   for (int i = 0; i < wheel_count; ++i) {
-    const Vector3d p(of_wheel(u, x_each, i), of_wheel(u, y_each, i), u[R] - u[h_B]);
-    Hub& hub = hubs[i] = read_hub(now, body, i, p, steering(now, i));
-    hub.M_3 = u[tau_brake_each + i * wheel_inputs] - u[M_drive] * of_wheel(u, drive_each, i);
-    if (reached(now, t_couple)) {
-      hub.f = -u[k_h] * hub.d - u[c_h] * hub.d_dot;
-      hub.f[2] = -strut(u, i, hub);
-    }
-    hub.f[2] -= now.d[at_share + i];
-  }
-  for (int i = 0; reached(now, t_couple) && i < wheel_count; ++i) {
+    Hub& hub = hubs[i];
+    hub.f.head<2>() = -u[k_h] * hub.d.head<2>() - u[c_h] * hub.d_dot.head<2>();
+    hub.f[2] -= strut(u, i, hub);
     if (bar_partner[i] < 0) continue;
     Hub& other = hubs[bar_partner[i]];
-    const double f = of_wheel(u, k_bar_each, i) * (hubs[i].d[2] - other.d[2]);
-    hubs[i].f[2] -= f;
+    const double f = of_wheel(u, k_bar_each, i) * (hub.d[2] - other.d[2]);
+    hub.f[2] -= f;
     other.f[2] += f;
   }
   return hubs;
 }
 
-void act_further(const Now&, const Hubs&, Body&, States&) {}
+/* m v' = F,  J w' = M - w x J w,  q' = q (0, w) / 2; until t_couple the body runs on straight. */
+States model_rates(const Now& now, const States& x) {
+  const Body body(x);
+  States x_dot = States::Zero();
+  x_dot.segment<3>(at_r) = body.v;
+  if (!reached(now, t_couple)) return x_dot;
+  Vector3d F = Vector3d::Zero(), M = Vector3d::Zero(); /* fixed axes; body axes, about B */
+  for (const Hub& hub : read_hubs(now, body)) {
+    F -= body.R * hub.f;
+    M += body.R.transpose() * hub.M - hub.arm.cross(hub.f);
+  }
+  const Vector3d J(now.u[J_1], now.u[J_2], now.u[J_3]);
+  const Quaterniond turned = body.q * Quaterniond(0, body.w[0], body.w[1], body.w[2]);
+  x_dot.segment<4>(at_q) << turned.w() / 2, turned.vec() / 2;
+  x_dot.segment<3>(at_v) = F / now.u[m_B] + Vector3d(now.d + at_g);
+  x_dot.segment<3>(at_w) = (M - body.w.cross(J.cwiseProduct(body.w))).cwiseQuotient(J);
+  x_dot[at_psi] = body.R.row(2).dot(body.w);
+  return x_dot;
+}
 
+/* The integrated heading is within half a turn of the one that R gives, which is wrapped. */
 void model_outputs(const Now& now, const States& x, double* y) {
   const double* u = now.u;
   const Body body(x);
   const Hubs hubs = read_hubs(now, body);
-  const Vector3d rear = write_outputs(x, body, hubs, {now.d[at_x_R], 0, u[R] - u[h_B]}, y);
+  const double heading = std::atan2(body.R(1, 0), body.R(0, 0));
+  const Vector3d point(now.d[at_x_R], 0, u[R] - u[h_B]), rear = body.r + body.R * point;
+  const Vector3d velocity = body.v + body.R * body.w.cross(point);
   y[X] = body.r[0], y[Y] = body.r[1], y[Z] = body.r[2];
   y[X_R] = rear[0], y[Y_R] = rear[1];
+  y[psi] = x[at_psi] + std::remainder(heading - x[at_psi], 2 * std::numbers::pi);
+  y[v] = velocity[0] * std::cos(heading) + velocity[1] * std::sin(heading);
+  y[omega] = body.R.row(2).dot(body.w);
   y[roll] = std::asin(body.R(2, 1));
   y[pitch] = -std::asin(body.R(2, 0));
   for (int i = 0; i < wheel_count; ++i) {
-    y[M_3_each + i * wheel_outputs] = -u[M_drive] * of_wheel(u, drive_each, i);
-    y[M_brake_each + i * wheel_outputs] = u[M_brake] * of_wheel(u, brake_each, i);
+    const Vector3d force = body.R * hubs[i].f;
+    const int of = i * wheel_outputs;
+    std::copy_n(force.data(), 3, y + F_X_each + of);
+    y[M_3_each + of] = -u[M_drive] * of_wheel(u, drive_each, i);
+    y[M_brake_each + of] = u[M_brake] * of_wheel(u, brake_each, i);
+    y[psi_dot_guide_each + of] = hubs[i].psi_dot;
+    y[theta_dot_guide_each + of] = hubs[i].theta_dot;
     y[d_each + i * wheel_locals] = hubs[i].d[2];
     y[delta_each + i * wheel_locals] = steering(now, i).angle;
   }

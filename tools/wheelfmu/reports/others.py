@@ -18,7 +18,6 @@ from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.others import wheels
 from wheelfmu.truth.others.kane import distance
 from wheelfmu.truth.others.wheels import read
-from wheelfmu.vehicles import wheel_sets as sets
 
 from .page import Report, number, part
 
@@ -31,7 +30,6 @@ SICONOS = {
     "resists": "upright, s = 0.01 m",
 }
 Compared = tuple[object, ...]  # a row of HEAD
-STIFFNESSES = {"driving": (40, 80, 160), "pulling": (10, 20, 40)}  # times that of the bushings of axle.fmu
 
 
 def digits(*values: float, places: int = 12) -> str:
@@ -95,18 +93,6 @@ def legendre(library: Library) -> Compared:
     return who, scene, "Legendre functions", "same", worst, "wheel.fmu: its solver at tolerance 1e-13"
 
 
-def wheel_set(report: Report, scene: str, factors: tuple[int, ...]) -> tuple[Compared, float]:
-    """Modelica's wheel set: the limit of axle.fmu with ever stiffer links, and its distance from the rigid one."""
-    table, rigid = sets.table(scene), sets.rigid(scene)
-    runs = [sets.coupled(report.fmus, scene, factor, 0.002 / factor) for factor in factors]
-    limit = sets.limit(runs)
-    own = sets.distance(limit, rigid)
-    name = f"RollingWheelSet{scene.capitalize()}, 3 s: x, y, φ; links → ∞"
-    whose = f"the table; wheel.fmu is within {number(own)} of the rigid wheel set"
-    printed = (ends(source, *sets.COMPARED, places=7) for source in (table, limit))
-    return ("Modelica Standard Library 4.0", name, *printed, sets.distance(limit, table), whose), own
-
-
 def siconos_table() -> dict[str, np.ndarray]:
     """Siconos run here where its package is installed, else the table of tests/others."""
     program = Path(wheels.__file__).with_name("siconos_wheel.py")
@@ -135,8 +121,6 @@ def siconos(report: Report) -> dict[str, object]:
 @part(100)
 def numbers(report: Report) -> dict[str, object]:
     """results of other programs"""
-    singles = [f(report.library) for f in (kane, modelica, coin, thrown, critical, legendre)]
-    rows, own = zip(*(wheel_set(report, *scene) for scene in STIFFNESSES.items()), strict=True)
-    found = pd.DataFrame([*singles, *rows], columns=HEAD)
+    rows = [of(report.library) for of in (kane, modelica, coin, thrown, critical, legendre)]
     figures = {"modelica_energy": modelica_drift(), "modelica_own": modelica_own(report.library)}
-    return {"numbers": found} | figures | dict(zip(STIFFNESSES, own, strict=True))
+    return {"numbers": pd.DataFrame(rows, columns=HEAD)} | figures

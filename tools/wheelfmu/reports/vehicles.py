@@ -1,4 +1,4 @@
-"""Vehicles of examples/vehicles: a balanced and a suspended wheel, axle and car, as tables and pictures."""
+"""Vehicles of examples/vehicles: a balanced and a suspended wheel, and a car, as tables and pictures."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from wheelfmu.vehicles import axle, balance, car_judges, suspended
+from wheelfmu.vehicles import balance, car_judges, suspended
 from wheelfmu.vehicles.car import CAR
 from wheelfmu.vehicles.car_judges import MANOEUVRES
 from wheelfmu.vehicles.drawing import draw
@@ -18,8 +18,6 @@ from .page import Report, Row, Tables, part
 
 GRID = 0.25  # s, where runs of the car are compared
 COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
-# How the inputs behave over a step: whether positions follow the velocities, and the exchange.
-OVER = {"held, positions lag": ({"follow": 0.0}, "held"), **{exchange: ({}, exchange) for exchange in EXCHANGES}}
 WAYS = {"locked": "locked wheel", "ideal": "ideal brake", "abs": "anti-lock; closed form: the shortest"}
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
@@ -65,32 +63,6 @@ def sliding(report: Report) -> pd.DataFrame:
     rows += [(f"car: {f.what}", f.unit, f.measured, f.exact) for f in found]
     judged = pd.DataFrame(rows, columns=["quantity", "unit", "measured", "closed form"])
     return judged.assign(**{"relative difference": (judged["measured"] / judged["closed form"] - 1).abs()})
-
-
-@part(120)
-def axle_steps(report: Report) -> pd.DataFrame:
-    """the axle: error against the step"""
-    scene = axle.TRAILING.changed(stop=2.0)
-    over = {name: axle.step_errors(report.fmus, scene.changed(**more), *how) for name, (more, *how) in OVER.items()}
-    found = pd.DataFrame(over).rename_axis("step, ms").reset_index()
-    return found.assign(**{"step, ms": 1000 * found["step, ms"]})
-
-
-@part(10)
-def axle_picture(report: Report) -> dict[str, object]:
-    """the axle: picture of its motion"""
-    table = axle.AXLE.drive(report.fmus, axle.TRAILING, 0.0005, "derivatives", 0.02).whole
-    draw(axle.AXLE, axle.TRAILING, table, report.folder / "vehicles_axle.png", ", step 0.5 ms")
-    return {}
-
-
-@part(30, {"scene": axle.SCENES})
-def axle_stiffness(report: Report, scene: Manoeuvre) -> Row:
-    """the axle: error against the stiffness"""
-    factors = (1.0, 2.0, 4.0)
-    found = axle.stiffness_errors(report.fmus, scene.changed(stop=2.0), factors)
-    row = {f"stiffness x {f:g}": e for f, e in found.items()}
-    return row | {"order in 1/k": float(-orders(found)[-1])}
 
 
 @part(120)

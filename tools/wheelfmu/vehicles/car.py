@@ -24,7 +24,7 @@ def starts(manoeuvre: Manoeuvre) -> dict[str, dict[str, float]]:
     for name in WHEELS:
         x, y = (manoeuvre[f"{axis}_{name}"] for axis in "xy")
         place = X + x * cos(psi) - y * sin(psi), Y + x * sin(psi) + y * cos(psi)
-        found[name] = road(manoeuvre) | beneath(manoeuvre, name) | upright(*place, psi, v, 0.0, R)
+        found[name] = {"guided": True} | road(manoeuvre) | beneath(manoeuvre, name) | upright(*place, psi, v, 0.0, R)
     return found
 
 

@@ -3,7 +3,9 @@
 With m all masses, R the wheels' radius, m_t = m + 4 J_z / R^2 (four wheels), L the wheelbase and T the track:
 
     launch and braking   m_t a = (M_drive - s m g - brakes) / R; the rear axle gains (a I + m_B g (h_B - R) pitch) / L
-    any bend             rear point on R = L / tan delta, so yaw rate = v tan(delta) / L at any speed: no understeer
+    any bend             rear point on R = L / tan delta, so yaw rate = v tan(delta) / L at any speed: no understeer;
+                         front axle m_f v omega, m_f L the first moment of all masses about the rear point
+    braking in a bend    the kinetic energy of masses and wheels, each at its own speed, goes into the brakes
     Ackermann            cot delta_outer - cot delta_inner = T / L
     steady circle        the outer wheels gain (a I + g roll (m_B (h_B - r) + 4 m_w r_0)) / T together
 
@@ -32,9 +34,9 @@ from .vehicle import Table
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())  # SI, from the chassis' centre of mass
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
 NAMES = {wheel: str(of["name"]) for wheel, of in WHEELS.items()}
-R_0, R, M_WHEEL, J_Z, G = 0.3, 0.35, 20.0, 1.8, 9.81  # the wheels' defaults
+R_0, R, M_WHEEL, J_X, J_Z, G = 0.3, 0.35, 20.0, 0.9, 1.8, 9.81  # the wheels' defaults
 MANOEUVRES = manoeuvres("car")
-STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST, SPLIT = MANOEUVRES.values()
+STRAIGHT, CIRCLE, STEP, EIGHT, LANE, HILL, TOO_FAST, SPLIT, CURVE = MANOEUVRES.values()
 AXLES = {w["axle"]: [n for n, other in WHEELS.items() if other["axle"] == w["axle"]] for w in WHEELS.values()}
 LEFT, RIGHT = ([name for name, wheel in WHEELS.items() if side * wheel["y"] > 0] for side in (1, -1))
 KINEMATIC, LOADED = 0.02, 0.08  # bounds, relative: what links that yield change of paths and speeds, and of loads
@@ -42,7 +44,7 @@ KINEMATIC, LOADED = 0.02, 0.08  # bounds, relative: what links that yield change
 
 def constants(manoeuvre: Manoeuvre) -> SimpleNamespace:
     """The car of a manoeuvre: its masses, lengths and stiffnesses, and what follows from them."""
-    c = SimpleNamespace(m_B=manoeuvre["m_B"], h_B=manoeuvre["h_B"], g=G * np.cos(manoeuvre["slope"]))
+    c = SimpleNamespace(**{name: manoeuvre[name] for name in ("m_B", "h_B", "J_3")}, g=G * np.cos(manoeuvre["slope"]))
     for name in ("x", "y", "k", "k_bar", "steer", "drive", "brake"):
         setattr(c, name, {w: manoeuvre[f"{name}_{w}"] for w in WHEELS})
     steered = [w for w in WHEELS if c.steer[w] > 0.5]
@@ -163,21 +165,53 @@ def stopped(table: Table, begin: float) -> int:
     return int(np.argmax((table["time"] > begin) & (spins == 0)))
 
 
-def braking(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
-    """Instant and distance of the stop from the state at t_brake, and the load moved forwards."""
-    t, begin, ramp = table["time"], manoeuvre["t_brake"], manoeuvre["ramp_M"]
-    i, fine = int(np.searchsorted(t, begin - 1e-9)), np.linspace(begin, t[-1], 200001)
-    (drag, grade), brakes = resistance(manoeuvre, c), manoeuvre["B_0"] * sum(c.brake.values())
-    a = (rise(fine, begin, ramp) * brakes + drag + R * c.mass * grade) / (R * c.m_t)
+def curvature(table: Table, c: SimpleNamespace, row: int) -> float:
+    """Of the rear point's path at a row, 1/m: by the steer angle."""
+    return float(np.tan(table["delta"][row]) / c.wheelbase)
+
+
+def slowed(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> tuple[int, np.ndarray, np.ndarray]:
+    """The row at which the brakes come; instants from there on and the rear point's deceleration by them, on a circle of
+    this curvature: power of the brakes, drag and grade = rate of the kinetic energy, each wheel at its own speed."""
+    t, begin = table["time"], manoeuvre["t_brake"]
+    ratio = {w: float(np.hypot(1 - kappa * c.y[w], kappa * (c.x[w] - c.x_rear))) for w in WHEELS}  # speed over v
+    moved = sum(M_WHEEL * of**2 + J_X * kappa**2 + J_Z * (of / R) ** 2 for of in ratio.values())
+    moved += c.m_B * (1 + (kappa * c.x_rear) ** 2) + c.J_3 * kappa**2
+    brakes = manoeuvre["B_0"] * sum(c.brake[w] * ratio[w] for w in WHEELS)
+    (drag, grade), fine = resistance(manoeuvre, c), np.linspace(begin, t[-1], 200001)
+    a = (rise(fine, begin, manoeuvre["ramp_M"]) * brakes + drag + R * c.mass * grade) / (R * moved)
+    return int(np.searchsorted(t, begin - 1e-9)), fine, a
+
+
+def stop(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> Iterator[Finding]:
+    """Instant and distance of the stop from the state at t_brake."""
+    t, begin = table["time"], manoeuvre["t_brake"]
+    i, fine, a = slowed(table, manoeuvre, c, kappa)
     v = table["v"][i] - cumulative_trapezoid(a, fine, initial=0)
     end = int(np.argmax(v <= 0))
-    full = (t > begin + ramp + 0.5 * (fine[end] - begin - ramp)) & (t < fine[end] - 0.05)
     way, later = float(trapezoid(v[: end + 1], fine[: end + 1])), float(t[stopped(table, begin)] - begin)
     yield Finding("instant of the stop after the brakes come", "s", later, float(fine[end] - begin), KINEMATIC, 1.0)
-    yield Finding("stopping distance", "m", float(table["X"][-1] - table["X"][i]), way, KINEMATIC, 2.0)
+    yield Finding("stopping distance", "m", float(trapezoid(table["v"][i:], t[i:])), way, KINEMATIC, 2.0)
+
+
+def braking(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
+    """A straight stop, and the load moved forwards."""
+    yield from stop(table, manoeuvre, c, 0.0)
+    t, begin = table["time"], manoeuvre["t_brake"] + manoeuvre["ramp_M"]
+    end, (drag, grade), a = t[stopped(table, begin)], resistance(manoeuvre, c), slowed(table, manoeuvre, c, 0.0)[2]
+    full = (t > begin + 0.5 * (end - begin)) & (t < end - 0.05)
     if np.count_nonzero(full) * (t[1] - t[0]) > 0.4:  # s: the chassis has ceased to pitch
         moment = drag + grade * c.heights - a[-1] * c.inertia
         yield load_moved(table, c, "front", "brakes", full, moment)
+
+
+def curved(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
+    """A stop on a circle; the car keeps it."""
+    i = int(np.searchsorted(table["time"], manoeuvre["t_brake"] - 1e-9))
+    kappa = curvature(table, c, i)
+    yield from stop(table, manoeuvre, c, kappa)
+    way, turned = float(trapezoid(table["v"][i:], table["time"][i:])), float(table["psi"][-1] - table["psi"][i])
+    yield Finding("angle turned while it stops", "rad", turned, kappa * way)
 
 
 def settled(table: Table) -> np.ndarray:
@@ -199,6 +233,12 @@ def bend(table: Table, _manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Fi
     yield Finding("radius of the rear point's circle", "m", v / omega, c.wheelbase / np.tan(delta))
     yield Finding("Ackermann, from the wheels' headings", "1", apart, across)
     yield Finding("load moved outwards", "N", moved, exact, LOADED, 0.03 * c.mass * G)
+    ahead = -c.m_B * c.x_rear + M_WHEEL * sum(c.x[w] - c.x_rear for w in WHEELS)  # kg m, of the rear point
+    front = v * omega * ahead / c.wheelbase
+    for axle, exact in (("front", front), ("rear", c.mass * v * omega - front)):
+        along, left = (force(table, AXLES[axle], k) for k in (1, 2))
+        across = float(np.mean((left * np.cos(table["psi"]) - along * np.sin(table["psi"]))[last]))
+        yield Finding(f"lateral force of the {axle} axle", "N", across, exact, KINEMATIC, 0.03 * c.mass * G)
 
 
 def closure(table: Table, _manoeuvre: Manoeuvre, _c: SimpleNamespace) -> Iterator[Finding]:
@@ -294,7 +334,7 @@ def split(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Fi
     yield Finding("largest angle of the heading", "rad", float(np.abs(table["psi"]).max()))
 
 
-JUDGES = {f.__name__: f for f in (launch, standing, braking, bend, closure, circle, step, lane, split)}
+JUDGES = {f.__name__: f for f in (launch, standing, braking, curved, bend, closure, circle, step, lane, split)}
 
 
 # ---- what the closed forms assume: by its words where it does not hold, whether it does ----
@@ -319,7 +359,7 @@ def alike(c: SimpleNamespace) -> bool:
 
 def stiff(run: Manoeuvre) -> bool:
     """Whether bushings have at least half the layout's stiffness."""
-    return all(run[name] >= 0.5 * LAYOUT["chassis"][name] for name in ("k_h", "k_a"))
+    return all(run[name] >= 0.5 * LAYOUT["chassis"][name] for name in ("k_h",))
 
 
 def full_torque(table: Table, run: Manoeuvre) -> bool:
@@ -384,6 +424,7 @@ ASSUMES: dict[str, tuple[str, ...]] = {
     "launch": (*AHEAD, "the full drive torque does not act alone for a second", "the chassis still pitches"),
     "standing": (*AHEAD, "the car does not stand still"),
     "braking": (*AHEAD, "the brakes alone do not stop it"),
+    "curved": (*AROUND, "the brakes alone do not stop it"),
     "bend": (*AROUND, "it is not steady at the end"),
     "circle": (*AROUND, "the speed does not rise from 5 s to 22 s at one steer angle"),
     "step": (*AROUND, "it is not steady at the end"),

@@ -12,14 +12,14 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from . import axle, balance, car, options, suspended
+from . import balance, car, options, suspended
 from .car_judges import demand, per_axle
 from .drawing import draw
 from .options import Manoeuvre
 from .vehicle import DRY_ROAD, ROOT, Fmus, Run, build_all
 
 RESULTS = ROOT / "results" / "examples"
-VEHICLES = {of.name: of for of in (axle.AXLE, car.CAR, suspended.SUSPENDED, balance.BALANCE)}
+VEHICLES = {of.name: of for of in (car.CAR, suspended.SUSPENDED, balance.BALANCE)}
 PER_PICTURE = 600  # rows, about
 
 

@@ -21,7 +21,7 @@ EXAMPLES = ROOT / "examples" / "vehicles"
 ROAD = ("s", "slope", "slope_direction", "mu_max", "mu_slide")
 WHEEL = variables((ROOT / "modelDescription.xml").read_bytes(), "parameter")
 EXCHANGES = ("held", "derivatives", "rollback")
-FOLDERS = {"axle": "axle", "car": "car", "suspended": "quarter_car", "balance": "balance"}
+FOLDERS = {"car": "car", "suspended": "quarter_car", "balance": "balance"}
 
 
 @cache
@@ -65,7 +65,7 @@ class Manoeuvre:
     judges: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
     exchange: str = "derivatives"
-    h: float = 0.001  # s
+    h: float = 0.001  # s, where its file gives no other
     grid: float | None = None  # s, of the table
     positive: tuple[str, ...] = ()  # parameters that have to be above zero
     zero: tuple[str, ...] = ()  # that have to be zero
