@@ -63,7 +63,7 @@ if len(sys.argv) > 1:
     import matplotlib.pyplot as plt
 
     t, x, y, _, turn, *rest = np.transpose(path)
-    axes = plt.subplots(3, 1, figsize=(7, 8), layout="constrained")[1]
+    axes = plt.subplots(3, 1, figsize=(7, 7), layout="constrained")[1]
     axes[0].plot(x, y, label="body")
     for i, name in enumerate(("front left", "front right", "rear left", "rear right")):
         axes[0].plot(rest[4 + i], rest[8 + i], lw=0.7, label=name)
@@ -74,4 +74,4 @@ if len(sys.argv) > 1:
     axes[2].set(xlabel="t [s]", ylabel="force of the road to the left [N]")
     axes[0].legend()
     axes[2].legend()
-    plt.savefig(sys.argv[1], dpi=120)
+    plt.savefig(sys.argv[1], dpi=80)

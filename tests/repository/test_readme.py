@@ -163,7 +163,7 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
 def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shortest_way(root):
     lines, shown = (EXAMPLES / "brake_limit.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)[0]
     assert python(lines, root) == shown
-    (essential,) = blocks("python", VEHICLE)
+    essential, _ = blocks("python", VEHICLE)
     assert all(line.split("  #")[0].strip() in lines for line in essential.splitlines())
     way, shortest = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(shortest - 25**2 / (2 * 0.4 * 9.81)), 0.005, "v^2 / (2 mu g), m")  # as printed
@@ -175,7 +175,7 @@ def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shorte
 
 
 def test_a_wheel_rolls_onto_a_hill_as_far_as_its_energy_takes_it(root):
-    lines, shown = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE)[1]
+    lines, shown = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE[VEHICLE.index("hill.py](") :])[0]
     assert python(lines, root) == shown
     way, height = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(way - height), 0.005, "distance uphill, m")  # as printed
@@ -183,8 +183,15 @@ def test_a_wheel_rolls_onto_a_hill_as_far_as_its_energy_takes_it(root):
     beyond(float(re.search(r"([\d.]+) m;", flat)[1]) - height, 500, "distance uphill, m")
 
 
-def test_the_step_limit_prints_what_its_section_shows(root):
-    assert run("python", EXAMPLES / "step_limit.py", folder=root) == blocks("text", VEHICLE)[2]
+@pytest.mark.parametrize("name", ["car", "anti_lock", "traction_control", "step_limit"])
+def test_an_example_of_the_vehicle_page_prints_what_the_page_shows(root, name):
+    shown = VEHICLE[VEHICLE.index(f"examples/python/{name}.py)") :]
+    assert run("python", EXAMPLES / f"{name}.py", folder=root) == blocks("text", shown)[0]
+
+
+def test_a_corner_in_one_wheel_stops_as_the_closed_form(root):
+    shown = VEHICLE[VEHICLE.index("## One corner") :]
+    assert python(blocks("python", shown)[0], root) == blocks("text", shown)[0]
 
 
 TUTORIAL = (ROOT / "docs" / "first_suspension.md").read_text(encoding="utf-8")
