@@ -2,12 +2,15 @@
 // omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
-// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1; a brake is too weak for any ramp.
+// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. A brake is too weak for so steep a ramp; but a jump that it
+// would undo within a millisecond stands for the ramp of a communication step, over which it goes on holding the wheel.
 #include <cmath>
 
 #include "wheel_equations.h"
 
 namespace {
+
+constexpr double ramp = 1e-3;  // s
 
 // omega_3 after changes by `free`, and by `friction` against its sign, which can hold it at zero; below zero it helps:
 // the ramp relieves the ground.
@@ -37,7 +40,9 @@ void wheel_turn(const WheelScene* scene, double psi_dot, double theta_dot, Wheel
     const double u = std::sqrt(at.u_x * at.u_x + at.u_y * at.u_y), f = u > 0 ? part * mu * N / u : 0;
     const double kappa = omega_s > 0 ? std::fabs(std::tanh(at.omega_3 / omega_s)) : 1, spin = now.omega_3;
     const double free = slides ? -rho * f * at.u_x : part * w.m * rho * eta * d_2;
-    const double omega_3 = spin_after(spin, free / inertia, part * kappa * w.s * N / inertia);
+    const double friction = part * kappa * w.s * N / inertia;
+    const bool braked = scene->friction.kind == WHEEL_HELD && std::fabs(free) <= part * ramp * scene->load.brake;
+    const double omega_3 = braked ? spin : spin_after(spin, free / inertia, friction);
     return Place{now.u_x - f * at.u_x / w.m - part * eta * d_2 + rho * (omega_3 - spin),
                  now.u_y - f * at.u_y / w.m + part * (w.r_0 * s + w.r) * d_1, omega_3};
   };

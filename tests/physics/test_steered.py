@@ -253,6 +253,22 @@ def test_a_jump_of_the_rates_is_the_limit_of_ever_steeper_ramps(library: Library
     within(max(errors[1] / errors[0], errors[2] / errors[1]), 0.2, "errors of ten times shorter ramps")
 
 
+@formulations
+def test_a_wheel_that_its_brake_holds_stays_held_while_its_carrier_swings(library: Library, formulation: int) -> None:
+    """As over ramps: the outputs read after each jump show no spin, and a moment far below the brake's capacity."""
+    lean = {"guided": True, "theta_start": CAMBER, "phi_dot_start": 0.0, "formulation": formulation, "s": 0.004}
+    for capacity, check in ((200.0, within), (0.0, beyond)):
+        w, spins, taus = library.wheel().start(**lean).put(M_brake=capacity), [], []
+        for i in range(100):
+            w.by(0.004).put(psi_dot_guide=0.02 * sin(0.3 * i), theta_dot_guide=0.02 * cos(0.3 * i))
+            omega_z, tau = w.get("omega_z", "tau")
+            spins.append(abs(omega_z))
+            taus.append(abs(tau))
+        check(max(spins), 1e-15, "largest spin after a jump, rad/s")
+        if capacity:
+            within(max(taus), 0.1 * capacity, "largest moment about the axle, N m")
+
+
 def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
     assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
     start, (_, theta_dot), _ = JUMPS["friction stops it"]
