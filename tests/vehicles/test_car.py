@@ -39,14 +39,14 @@ def test_the_car_stands_starts_and_parks_on_the_hill_without_rolling_back(fmus: 
 
 
 def test_the_orders_of_the_masters(fmus: Fmus) -> None:
-    """Reference: rollback at half of the smallest step."""
+    """Reference: rollback at a quarter of the smaller step."""
     lane = LANE.changed(stop=3.0)
-    truth = drive(fmus, lane, 0.0005, "rollback", 0.25)
+    truth = drive(fmus, lane, 0.00125, "rollback", 0.25)
     for exchange, order in (("held", 1), ("derivatives", 2), ("rollback", 4)):
-        coarse, fine = (car.CAR.error(fmus, lane, truth, h, exchange) for h in (0.002, 0.001))
+        coarse, fine = (car.CAR.error(fmus, lane, truth, h, exchange) for h in (0.01, 0.005))
         within(abs(np.log2(coarse / fine) - order), 0.3, f"{exchange}: order of convergence off {order}")
     softer = lane.changed(**{f"k_{w}": 0.99 * float(wheel["k"]) for w, wheel in WHEELS.items()})
-    beyond(car.CAR.error(fmus, softer, truth, 0.002, "rollback") / coarse, 100, "error of springs 1 % softer")
+    beyond(car.CAR.error(fmus, softer, truth, 0.01, "rollback") / coarse, 100, "error of springs 1 % softer")
 
 
 def stiffer(manoeuvre: Manoeuvre, factor: float) -> Manoeuvre:
@@ -61,7 +61,7 @@ LAUNCH = STRAIGHT.changed(stop=3.5, B_0=0.0)
 
 @pytest.mark.parametrize(
     ("manoeuvre", "judge", "count", "rest"),
-    [(QUICK_CIRCLE, "bend", 3, 4e-4), (LAUNCH, "launch", 2, 4e-4), (STEP, "step", 3, 1e-3)],
+    [(QUICK_CIRCLE, "bend", 5, 4e-4), (LAUNCH, "launch", 2, 4e-4), (STEP, "step", 3, 1e-3)],
 )
 def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     fmus: Fmus, manoeuvre: Manoeuvre, judge: str, count: int, rest: float
@@ -98,7 +98,7 @@ def test_wheels_that_never_slip_do_not_understeer(fmus: Fmus) -> None:
 
 
 def test_the_figure_of_eight_closes(fmus: Fmus) -> None:
-    for eight, check in ((EIGHT, within), (EIGHT.changed(k_y=0.0, k_psi=0.0), beyond)):  # after 105 m
+    for eight, check in ((EIGHT, within), (EIGHT.changed(k_y=0.0, k_psi=0.0, T_delta=0.3), beyond)):  # after 105 m
         gap, _ = car_judges.closure(drive(fmus, eight, 0.002), eight, constants(eight))
         check(gap.measured, 0.02, "gap, m")
 
