@@ -46,4 +46,6 @@ def distance(control):
 
 for control in ("locked", "anti-lock", "limited"):
     print(f"{control}: {distance(control):.1f} m")
-print(f"v^2 / (2 mu g): {v**2 / (2 * slide * 9.81):.1f} m sliding, {v**2 / (2 * grip * 9.81):.1f} m at the limit of grip")
+print(
+    f"v^2 / (2 mu g): {v**2 / (2 * slide * 9.81):.1f} m sliding, {v**2 / (2 * grip * 9.81):.1f} m at the limit of grip"
+)

@@ -66,13 +66,17 @@ LAUNCH = STRAIGHT.changed(stop=3.5, B_0=0.0)
 def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     fmus: Fmus, manoeuvre: Manoeuvre, judge: str, count: int, rest: float
 ) -> None:
-    """rest: roll squared, as after a step, does not fall as 1 / k."""
+    """rest: roll squared, as after a step, does not fall as 1 / k. Nor do the lateral forces of the axles, whose wheels do
+    not slip: stiffer bushings hold more of the strain that entering the bend has left."""
     tables = (drive(fmus, stiffer(manoeuvre, k), 0.0005) for k in (1.0, 3.0))
     found, c = car_judges.JUDGES[judge], constants(manoeuvre)
     soft, stiff = ([f for f in found(table, manoeuvre, c) if f.exact] for table in tables)
     assert len(soft) == count
     for finding, nearer in zip(soft, stiff, strict=True):
         within(error(finding), 0.04, f"{finding.what}, relative")
+        if finding.what.startswith("lateral force"):
+            within(error(nearer), 0.02, f"{finding.what}, stiff links, relative")
+            continue
         within(error(nearer) / max(0.45 * error(finding), rest), 1, "error of stiff links over what 1/k allows")
 
 

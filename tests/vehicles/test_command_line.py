@@ -49,7 +49,9 @@ def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str) -> None
         assert options.value(name, f"{parameter}=1") == (parameter, 1.0)
 
 
-@pytest.mark.parametrize(("model", "name", "said"), [("chassis", "m_B", ": it must be above 0 kg."), ("wheel", "m", "")])
+@pytest.mark.parametrize(
+    ("model", "name", "said"), [("chassis", "m_B", ": it must be above 0 kg."), ("wheel", "m", "")]
+)
 def test_the_unit_refuses_a_value_in_its_own_words(fmus: Fmus, model: str, name: str, said: str) -> None:
     component = Component(model, fmus[model], {name: -1.0})
     with pytest.raises(ValueError, match=f"^{model}: {name} = -1{said}"), loaded(component):
