@@ -136,7 +136,8 @@ def test_a_warning_is_no_event(wheel: Wheel) -> None:
     """Partner: the wheel gives one, with the instant of a look at it, which depends on the step."""
     given = {"m": "12", "J_x": "0.559", "J_y": "0.559", "J_z": "1.1", "slope": "0.12", "M_brake": "20"}
     wheel.begin(given, DEFAULT, logging=True)
-    wheel.fmu.doStep(0.0, 1.0)
+    for t in np.arange(100) / 100:
+        wheel.fmu.doStep(t, 0.01)
     assert any("mu_required" in text for _, text in wheel.log)
     wheel.end()
     run = wheel.motion(given, np.linspace(0, 1, 101), DEFAULT)
