@@ -11,13 +11,14 @@
  *
  *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other end of the bar))
  *
- * f acts on the wheel, -f on the chassis. The carrier turns with the chassis and the steer angle delta_i to the left: the
- * axle's direction is n = (sin delta_i, -cos delta_i, 0) in body axes, and the wheel gets its heading and tilt as rates,
+ * f acts on the wheel, -f on the chassis. The carrier turns with the chassis and the steer angle delta_i to the left:
+ * the axle's direction is n = (sin delta_i, -cos delta_i, 0) in body axes, and the wheel gets its heading and tilt as
+ * rates,
  *
  *   R n = (sin theta sin psi, -sin theta cos psi, cos theta),   psi_dot_guide = psi' + align (psi - psi_wheel),
  *
- * theta_dot_guide likewise; `align` takes back what the communication steps leave. The chassis carries the wheel's moments
- * M_guide_1 e1 + M_guide_2 e2, tau_brake e3 and the reaction of the drive.
+ * theta_dot_guide likewise; `align` takes back what the communication steps leave. The chassis carries the wheel's
+ * moments M_guide_1 e1 + M_guide_2 e2, tau_brake e3 and the reaction of the drive.
  *
  * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L
  * from that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta). Drive: M_3 = -share

@@ -11,7 +11,7 @@ from wheelfmu.vehicles import balance, car_judges, suspended
 from wheelfmu.vehicles.car import CAR
 from wheelfmu.vehicles.car_judges import MANOEUVRES
 from wheelfmu.vehicles.drawing import draw
-from wheelfmu.vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
+from wheelfmu.vehicles.options import EXCHANGES, manoeuvres
 from wheelfmu.vehicles.vehicle import STEPS, orders
 
 from .page import Report, Row, Tables, part
