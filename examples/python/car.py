@@ -1,7 +1,7 @@
 """A car that steers, in the plane: a body on four guided wheels, whose carriers turn the front ones. SI units.
 
-python car.py [PICTURE.png]. Links of stiffness k and damping c hold the wheels' centres in the body; forces are held over
-each step. A steady turn is compared with closed forms of rigid links. Signs: docs/vehicle.md.
+python car.py [PICTURE.png]. Links of stiffness k and damping c hold the wheels' centres in the body; forces are held
+over each step. A steady turn is compared with closed forms of rigid links. Signs: docs/vehicle.md.
 """
 
 import sys
@@ -44,7 +44,7 @@ for n in range(1000):
     lag = np.stack([X, Y], 1) - place - arms
     rate = np.stack([X_dot, Y_dot], 1) - velocity - omega * np.stack([-arms[:, 1], arms[:, 0]], 1)
     F = -k * lag - c * rate  # of the links on the wheels
-    for wheel, hub, at, force in zip(wheels, HUBS, heading, F):
+    for wheel, hub, at, force in zip(wheels, HUBS, heading, F, strict=True):
         turn = (psi + h * omega + steer(hub, t + h) - at) / h  # to where the carrier will be: no drift
         wheel.setReal(SET, [*force, -m_B * 9.81 / 4, turn])
         wheel.doStep(t, h)

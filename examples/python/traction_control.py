@@ -1,7 +1,7 @@
-"""Traction control on ice: a driven quarter car starts with spinning wheel, and with a torque limited to the grip. SI units.
+"""Traction control on ice: a driven quarter car starts with spinning wheel, and with a torque limited to the grip. SI.
 
-The wheel carries its corner of the car in its own mass m. The limit is one Newton step before each step, by the directional
-derivative of mu_required.
+The wheel carries its corner of the car in its own mass m. The limit is one Newton step before each step, by the
+directional derivative of mu_required.
 """
 
 from math import pi

@@ -175,7 +175,8 @@ def test_one_newton_step_keeps_the_brake_within_the_grip_and_stops_in_the_shorte
 
 
 def test_a_wheel_rolls_onto_a_hill_as_far_as_its_energy_takes_it(root):
-    lines, shown = (EXAMPLES / "hill.py").read_text(encoding="utf-8"), blocks("text", VEHICLE[VEHICLE.index("hill.py](") :])[0]
+    lines = (EXAMPLES / "hill.py").read_text(encoding="utf-8")
+    shown = blocks("text", VEHICLE[VEHICLE.index("hill.py](") :])[0]
     assert python(lines, root) == shown
     way, height = map(float, re.findall(r"([\d.]+) m[;.]", shown))
     within(abs(way - height), 0.005, "distance uphill, m")  # as printed

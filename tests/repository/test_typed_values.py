@@ -168,7 +168,8 @@ def test_a_fault_of_any_kind_is_refused_by_every_command_in_one_sentence_with_st
 
 TAKEN = ("run v=18.5", "run keep_contact=true method=bdf", "run keep_contact=1 formulation=3", "run coin s=1mm")
 TAKEN += ("study --vary formulation=1,multibody --set keep_contact=true --set method=bdf", "study --vary s=0:0.1:3")
-TAKEN += ("example car path=1 v=18.5", "example suspended exchange=held", "view motion.csv --slope 12% --r_0 30cm --r 5cm")
+TAKEN += ("example car path=1 v=18.5", "example suspended exchange=held")
+TAKEN += ("view motion.csv --slope 12% --r_0 30cm --r 5cm",)
 TAKEN += ("view motion.csv --output thesis.html --overwrite", "report speed --publish")
 
 

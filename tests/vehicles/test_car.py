@@ -66,8 +66,8 @@ LAUNCH = STRAIGHT.changed(stop=3.5, B_0=0.0)
 def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
     fmus: Fmus, manoeuvre: Manoeuvre, judge: str, count: int, rest: float
 ) -> None:
-    """rest: roll squared, as after a step, does not fall as 1 / k. Nor do the lateral forces of the axles, whose wheels do
-    not slip: stiffer bushings hold more of the strain that entering the bend has left."""
+    """rest: roll squared, as after a step, does not fall as 1 / k. Nor do the lateral forces of the axles, whose wheels
+    do not slip: stiffer bushings hold more of the strain that entering the bend has left."""
     tables = (drive(fmus, stiffer(manoeuvre, k), 0.0005) for k in (1.0, 3.0))
     found, c = car_judges.JUDGES[judge], constants(manoeuvre)
     soft, stiff = ([f for f in found(table, manoeuvre, c) if f.exact] for table in tables)

@@ -171,8 +171,8 @@ def curvature(table: Table, c: SimpleNamespace, row: int) -> float:
 
 
 def slowed(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> tuple[int, np.ndarray, np.ndarray]:
-    """The row at which the brakes come; instants from there on and the rear point's deceleration by them, on a circle of
-    this curvature: power of the brakes, drag and grade = rate of the kinetic energy, each wheel at its own speed."""
+    """The row at which the brakes come; instants from there on and the rear point's deceleration by them, on a circle
+    of this curvature: power of the brakes, drag and grade = rate of the kinetic energy, each wheel at its own speed."""
     t, begin = table["time"], manoeuvre["t_brake"]
     ratio = {w: float(np.hypot(1 - kappa * c.y[w], kappa * (c.x[w] - c.x_rear))) for w in WHEELS}  # speed over v
     moved = sum(M_WHEEL * of**2 + J_X * kappa**2 + J_Z * (of / R) ** 2 for of in ratio.values())
