@@ -1,8 +1,8 @@
 """Three brakes on a wet road: locked, anti-lock, and limited to the grip. SI units.
 
 The wheel carries its corner of the car in its own mass m, so one guided wheel.fmu is the whole quarter car. Coulomb
-friction has no stable slip: mu_max as long as the wheel rolls, mu_slide at any slip. So an anti-lock brake gains only in
-the moments in which the wheel grips again, and a brake that stays below the grip is the best one.
+friction has no stable slip: mu_max as long as the wheel rolls, mu_slide at any slip. So an anti-lock brake gains only
+in the moments in which the wheel grips again, and a brake that stays below the grip is the best one.
 """
 
 from math import pi
