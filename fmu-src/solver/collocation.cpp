@@ -59,7 +59,7 @@ constexpr Table radau = make_table();
 constexpr double part_of_tolerance = 0.2;
 // How far the sweeps may be from their limit, over the error of the step; the error of the polynomial against its last
 // term, which falls less fast where the turning is steep.
-constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.05;
+constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.1;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
 // The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.

@@ -271,3 +271,23 @@ def test_the_multibody_form_solves_a_narrow_law_as_the_reduced_one_does(library:
             others.append(np.abs(states[0] - [runs[1][name][0] for name in ("X_O", "Y_O", "theta", "psi")]).max())
     within(float(np.median(apart)), 1, "formulations apart over the tolerance, median")
     beyond(float(np.median(others)), 1e-2, "motion, median")
+
+
+@pytest.mark.parametrize("seed", [41, 64, 172, 184, 477, 1169])
+def test_a_release_from_the_layer_is_as_exact_as_the_tolerance(library: Library, seed: int) -> None:
+    """There omega_z leaves its balance within one step, and what is left of it moves the whole motion after it."""
+    random, times, columns = np.random.default_rng(seed), np.linspace(0, 4, 21), ("X_O", "Y_O", "theta", "omega_z")
+    start = {"theta_start": random.uniform(0.9, np.pi - 0.9), "psi_dot_start": random.normal()}
+    start |= {"theta_dot_start": random.normal(0, 0.7), "phi_dot_start": random.normal(0, 4)}
+    start |= {"s": random.uniform(0.003, 0.06), "omega_s": 10 ** random.uniform(-5.2, -3.8)}
+
+    def moved(tolerance: float, **changes: float) -> Run:
+        return run(library, {"friction_law": 2, **start, **changes}, times, tolerance)
+
+    def distance(other: Run) -> float:
+        return max(float(np.abs(other[name] - exact[name]).max() / np.ptp(exact[name])) for name in columns)
+
+    exact = moved(1e-13)
+    shifts = ("theta_start", "phi_dot_start", "psi_dot_start")
+    growth = max(1.0, *(distance(moved(1e-13, **{name: start[name] + 1e-9})) / 1e-9 for name in shifts))
+    within(distance(moved(1e-8)) / 1e-8 / growth, 5, "error / range over tolerance and growth")
