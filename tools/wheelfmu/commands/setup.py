@@ -1,5 +1,5 @@
 """Installs the prerequisites of commands: Debian packages (as root by apt-get; otherwise it lists them) and .venv
-with the locked Python packages of uv.lock. Two at once wait for each other. Without a word it installs what
+with the Python packages of requirements.lock. Two at once wait for each other. Without a word it installs what
 ./scripts/run needs."""
 
 from argparse import Namespace
