@@ -47,7 +47,7 @@ def test_the_guides_study_is_that_of_its_command_line(tmp_path: Path) -> None:
     study = study_file(file)["study"]
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert arguments_of(words).study == study != arguments_of(other).study
+    assert asdict(arguments_of(words).study) == asdict(study) != asdict(arguments_of(other).study)
 
 
 def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> None:
