@@ -4,11 +4,13 @@ Random calls and values are the fuzzer's. hypothesis draws the examples, the sam
 """
 
 from contextlib import nullcontext
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 from support.bounds import within
 
 from wheelfmu.fmu.driver import OK, FMU2Wheel
@@ -36,6 +38,20 @@ def scenes(draw: st.DrawFn) -> dict[str, float]:
     }
 
 
+def smooth_pieces(w: FMU2Wheel, ends: np.ndarray) -> list[float]:
+    """The ends of pieces, and between them the instants at which N passes zero, kinks of the power of friction."""
+    state = w.serialized()
+
+    def normal_force(t: float) -> float:
+        return w.back(state).to(t).get("lambda_3")[0]
+
+    forces = [w.get("lambda_3")[0], *map(normal_force, ends[1:])]
+    changes = [k for k in range(1, len(ends)) if forces[k - 1] * forces[k] < 0]
+    kinks = [brentq(normal_force, ends[k - 1] + 1e-9, ends[k], xtol=1e-14) for k in changes]
+    w.back(state)
+    return sorted([*ends, *kinks])
+
+
 def energy_defect(w: FMU2Wheel, counted: dict[str, float], pieces: int = 8, width: float = 1 / 32) -> float:
     """|change of E - work of the loads and of the smooth friction| over the size of what moves; quadrature of power.
 
@@ -43,16 +59,17 @@ def energy_defect(w: FMU2Wheel, counted: dict[str, float], pieces: int = 8, widt
     """
     first = w.get("E")[0]
     work = moved = 0.0
-    for k in range(pieces):
+    for begin, end in pairwise(smooth_pieces(w, width * np.arange(pieces + 1))):
+        width = end - begin
         for node, weight in zip(NODES, WEIGHTS, strict=True):
-            w.to((k + 0.5 * (1 + node)) * width)
+            w.to(begin + 0.5 * (1 + node) * width)
             v_X, v_Y, v_Z, theta, psi_dot, theta_dot, omega_z, N = w.get(*POWERS)
             friction = counted["s"] * max(N, 0.0) * np.tanh(omega_z / counted["omega_s"])
             speeds = (v_X, v_Y, v_Z, theta_dot, psi_dot * np.sin(theta), omega_z)
             powers = [counted[name] * v for name, v in zip(INPUTS, speeds, strict=True)] + [-friction * omega_z]
             work += 0.5 * width * weight * sum(powers)
             moved += 0.5 * width * weight * sum(map(abs, powers))
-    return abs(w.to(pieces * width).get("E")[0] - first - work) / (abs(first) + moved)
+    return abs(w.to(end).get("E")[0] - first - work) / (abs(first) + moved)
 
 
 @pytest.mark.parametrize("forgotten", ["nothing", *INPUTS, "s"])
