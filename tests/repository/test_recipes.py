@@ -192,12 +192,15 @@ def test_the_rate_of_an_output_of_state_and_force_is_that_of_its_course(patched:
 
 def test_the_tests_of_the_contract_hold_with_these_events_too(patched: Patched) -> None:
     names = ("contract/test_call_states", "contract/test_description", "contract/test_serialization")
-    tests = [f"tests/{name}.py" for name in (*names, "exchange/test_calls")]
+    tests = [f"../tests/{name}.py" for name in (*names, "exchange/test_calls")]
     environment = os.environ | {"WHEEL_BUILD": str(patched.fmu.parent)}
+    environment.pop("PYTHONSAFEPATH", None)  # the package is that of the copy
     # These read the only message; the wheel of the copy logs its leans too.
-    others = "not (damaged_truncated or place_in_a_layer or spin_set_across)"
+    others = "not (damaged_truncated or place_in_a_layer or spin_set_across or slides_although)"
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests, "-k", others]
-    done = subprocess.run(command, cwd=patched.root, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=patched.root / "tools", env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout[-3000:]
 
 
