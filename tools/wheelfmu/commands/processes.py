@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -13,7 +14,12 @@ from typing import Any
 
 PR_SET_CHILD_SUBREAPER = 36
 PATIENCE = 5.0  # s, for a program to end by itself
+ROUND = 0.2  # s, between two looks for adopted processes that have ended
 SAFE = {"PYTHONSAFEPATH": "1"}  # the processes of pytest-xdist import nothing from the current folder
+
+
+STARTED: set[int] = set()
+starting = threading.Lock()
 
 
 class Failed(Exception):
@@ -24,12 +30,29 @@ class Failed(Exception):
 
 
 def adopt() -> None:
-    """Processes whose parent has gone become this one's children."""
+    """Processes whose parent has gone become this one's children; once they have ended, they vanish."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    threading.Thread(target=bury, daemon=True).start()
+
+
+def bury() -> None:
+    """Takes the status of adopted processes that have ended: those of other sessions that were not started here."""
+    me, own = str(os.getpid()), str(os.getsid(0))
+    while True:
+        time.sleep(ROUND)
+        for entry in Path("/proc").glob("[0-9]*/stat"):
+            with suppress(OSError), starting:
+                state, parent, _, session = entry.read_text(errors="replace").rpartition(")")[2].split()[:4]
+                pid = int(entry.parent.name)
+                if (state, parent) == ("Z", me) and session != own and pid not in STARTED:
+                    os.waitpid(pid, os.WNOHANG)
 
 
 def start(*words: str | Path, **how: Any) -> subprocess.Popen:
-    return subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
+    with starting:
+        one = subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
+        STARTED.add(one.pid)
+    return one
 
 
 def status(*words: str | Path, **how: Any) -> int:
