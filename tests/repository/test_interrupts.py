@@ -76,8 +76,8 @@ def unfinished() -> set[str]:
 def test_a_command_ends_whole_at_ctrl_c(tmp_path: Path, line: str, until: str, delay: float) -> None:
     before = unfinished()
     words = ["/bin/bash", str(ROOT / "scripts" / line.split()[0]), *line.format(place=tmp_path).split()[1:]]
-    status, printed, seconds = at_terminal(words, until, delay, tmp_path.name)
-    assert (status, marked(tmp_path.name)) == (130, []), printed
+    status, printed, seconds = at_terminal(words, until, delay, str(tmp_path))
+    assert (status, marked(str(tmp_path))) == (130, []), printed
     assert seconds < 30, printed
     assert not [said for said in ("Traceback", "could not", "is ready", "passed") if said in printed], printed
     left, give_up = unfinished() - before, time.monotonic() + 300
