@@ -65,7 +65,7 @@ class Manoeuvre:
     judges: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
     exchange: str = "derivatives"
-    h: float = 0.001  # s, where its file gives no other
+    h: float = 0.001  # s
     grid: float | None = None  # s, of the table
     positive: tuple[str, ...] = ()  # parameters that have to be above zero
     zero: tuple[str, ...] = ()  # that have to be zero
