@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -35,15 +36,21 @@ def adopt() -> None:
     threading.Thread(target=bury, daemon=True).start()
 
 
+def table() -> Iterator[tuple[int, str, int, int]]:
+    """Of each process its number, state, parent and session."""
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            state, parent, _, session = entry.read_text(errors="replace").rpartition(")")[2].split()[:4]
+            yield int(entry.parent.name), state, int(parent), int(session)
+
+
 def bury() -> None:
     """Takes the status of adopted processes that have ended: those of other sessions that were not started here."""
-    me, own = str(os.getpid()), str(os.getsid(0))
+    me, own = os.getpid(), os.getsid(0)
     while True:
         time.sleep(ROUND)
-        for entry in Path("/proc").glob("[0-9]*/stat"):
-            with suppress(OSError), starting:
-                state, parent, _, session = entry.read_text(errors="replace").rpartition(")")[2].split()[:4]
-                pid = int(entry.parent.name)
+        for pid, state, parent, session in table():
+            with suppress(ChildProcessError), starting:
                 if (state, parent) == ("Z", me) and session != own and pid not in STARTED:
                     os.waitpid(pid, os.WNOHANG)
 
@@ -85,12 +92,7 @@ def side_by_side(*programs: list[str], **how: Any) -> None:
 
 def descendants() -> list[int]:
     """Processes that descend from this one and run."""
-    parents = {}
-    for entry in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):  # it has ended
-            state, parent = entry.read_text(errors="replace").rpartition(")")[2].split()[:2]
-            if state != "Z":
-                parents[int(entry.parent.name)] = int(parent)
+    parents = {pid: parent for pid, state, parent, _ in table() if state != "Z"}
     found = [os.getpid()]
     for one in found:
         found += [pid for pid, parent in parents.items() if parent == one]
