@@ -10,17 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from page.pages import FLAGS, RECORD, REST, SIZE, opened, view, window_of, write_csv
-from playwright.sync_api import Browser, BrowserContext, Page
+from page.pages import RECORD, REST, SIZE, opened, view, window_of, write_csv
+from playwright.sync_api import BrowserContext, Page
 
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.page.browser import chromium
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with chromium(*FLAGS) as found:
-        yield found
 
 
 @pytest.fixture(scope="session")

@@ -14,8 +14,6 @@ from wheelfmu.page.browser import show, surroundings
 POSE = (*bodies.POSE, "Z_O")
 RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)
 SIZE = {"width": 900, "height": 640}  # of the window, CSS pixels
-# The page beside the scene is composed at once, instead of by the processor in the place of a graphics card.
-FLAGS = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 # Advice of the browser on how the tests look at pictures.
 NOISE = ("GPU stall due to ReadPixels", "willReadFrequently")
 # Most tests look at everything but the pixels of the scene: the calls that make the processor draw it are left out, and

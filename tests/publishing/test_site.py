@@ -6,7 +6,6 @@ import re
 import runpy
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -124,13 +123,6 @@ def test_every_glyph_of_every_formula_is_in_the_font_that_the_site_brings(site: 
     used = {sign for part in formulas for sign in part.text_content()}
     assert {sign for sign in used if not sign.isspace() and ord(sign) not in glyphs} == set()
     assert "\u02d9" in used and ord("\u2603") not in glyphs  # the dot of a derivative; a partner
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Headless, where the pages are that it serves; their folder can be deleted."""
-    with pytest.importorskip("wheelfmu.page.browser").chromium() as found:
-        yield found
 
 
 def test_the_search_shows_words_about_what_it_found_without_a_server_too(site: Path, browser: Any) -> None:

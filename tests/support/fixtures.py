@@ -5,6 +5,7 @@ import resource
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,6 +22,8 @@ UNCHECKED = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
 settings.register_profile("same", derandomize=True, deadline=None, database=None, suppress_health_check=UNCHECKED)
 settings.load_profile("same")
 
+# A page is composed at once, instead of by the processor in the place of a graphics card.
+AT_ONCE = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
 COMPONENTS = ("diagrams", "examples", "page", "publishing", "release", "studies", "vehicles")  # not the core
 
@@ -98,6 +101,13 @@ def description(fmu: str):
 def reference_tables() -> dict[str, dict[str, np.ndarray]]:
     """The trusted tables of the paper's two scenes, every 0.1 s."""
     return {scene: read_table(f"paper_{scene}") for scene in ("free", "friction")}
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """A headless browser, the only one of its process: Playwright starts no second. Its folder can be deleted."""
+    with pytest.importorskip("wheelfmu.page.browser").chromium(*AT_ONCE) as found:
+        yield found
 
 
 @pytest.fixture

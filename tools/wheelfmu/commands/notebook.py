@@ -16,10 +16,11 @@ def needs(given: Namespace) -> list[str]:
 
 def main(given: Namespace) -> None:
     fmu()
-    del os.environ["MPLBACKEND"]  # figures stand in the notebook
     if given.write:
         from wheelfmu.publishing import notebook
 
         notebook.write()
-    else:  # root, as in a container
+    else:
+        del os.environ["MPLBACKEND"]  # figures stand in the notebook
+        # As root too, as in a container.
         processes.check(*processes.python("jupyterlab", "--allow-root", "examples/wheel.ipynb"))

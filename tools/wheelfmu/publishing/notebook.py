@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import os
+
 import nbformat
 from nbclient import NotebookClient
 
@@ -26,7 +28,9 @@ def executed(fmu: str = "../wheel.fmu", results: str = "../results") -> nbformat
         cell.source = here.replace("from ipywidgets", "from no_widgets")
     place = {"metadata": {"path": NOTEBOOK.parent}}
     # The output of a cell comes in pieces, more of them on a busy machine: each stream becomes one.
-    NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place).execute()
+    client = NotebookClient(notebook, timeout=1800, record_timing=False, coalesce_streams=True, resources=place)
+    # Figures stand in the notebook, whatever the backend of this process.
+    client.execute(env={name: value for name, value in os.environ.items() if name != "MPLBACKEND"})
     for number, (cell, source) in enumerate(cells):
         cell.source, cell.metadata, cell.id = source, {}, f"cell-{number}"
         if cell.cell_type == "code":
