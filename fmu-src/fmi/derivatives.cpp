@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exchange.hpp"
 #include "instance.hpp"
+#include "slopes.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic;
 namespace legality = fmi::legality;

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "instance.hpp"
+#include "snapshot.hpp"
 
 using fmi::guarded, fmi::handle_of, fmi::Instance, fmi::no_fault;
 namespace legality = fmi::legality;

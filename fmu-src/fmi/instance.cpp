@@ -5,6 +5,8 @@
 #include <cstring>
 #include <new>
 
+#include "logbook.hpp"
+
 namespace fmi {
 
 using wheel::Topic;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exchange.hpp"
 #include "instance.hpp"
 
 using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic, wheel::Wheel;

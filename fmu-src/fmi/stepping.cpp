@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "instance.hpp"
+#include "motion.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exchange.hpp"
 #include "instance.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;

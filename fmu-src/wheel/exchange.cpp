@@ -1,11 +1,13 @@
 // Model exchange: states, indicators, decisions at events, by the functions that co-simulation uses.
+#include "exchange.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "events.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
+#include "logbook.hpp"
 
 namespace wheel {
 namespace {

@@ -1,9 +1,10 @@
 // Messages of a run's events, with instants on the caller's clock.
+#include "logbook.hpp"
+
 #include <cstdio>
 
 #include "events.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
 
 namespace wheel {
 namespace {

@@ -9,13 +9,16 @@
 //   arrive          run: t, observed; demand: inputs and news, where an input varies
 //   end             run: t, y, phase, ended_by, counted
 //   fail            run: as before the step, but for the phase; demand.news: as before
+#include "motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "events.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
+#include "logbook.hpp"
+#include "posed_problem.hpp"
 
 namespace wheel {
 namespace {

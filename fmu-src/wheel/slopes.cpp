@@ -1,6 +1,8 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
 // rounding; a variable that is not linear in the forces follows from those of the forces and of the motion
 // (Row::by_force), and a rate that another variable has is read there (Row::read_rate).
+#include "slopes.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +11,8 @@
 #include <limits>
 #include <utility>
 
+#include "exchange.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
 
 namespace wheel {
 namespace {

@@ -1,11 +1,13 @@
 // Bytes may come from anywhere: whatever they are, reading them is harmless.
+#include "snapshot.hpp"
+
 #include <cstring>
 #include <string_view>
 
 #include "bytes.hpp"
 #include "events.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
+#include "posed_problem.hpp"
 
 namespace wheel {
 namespace {

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "events.hpp"
+#include "exchange.hpp"
 #include "law.hpp"
+#include "logbook.hpp"
 
 namespace wheel {
 namespace {

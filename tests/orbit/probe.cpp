@@ -2,7 +2,7 @@
 #include <new>
 
 #include "law.hpp"
-#include "wheel.hpp"
+#include "posed_problem.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)

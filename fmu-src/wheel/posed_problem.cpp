@@ -1,11 +1,12 @@
 // What the solver asks: right-hand side, error weights, watched functions.
+#include "posed_problem.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "events.hpp"
 #include "law.hpp"
-#include "wheel.hpp"
 
 namespace wheel {
 namespace {

@@ -1,0 +1,35 @@
+// Model exchange. The caller's solver moves the states, those of wheel_euler; an input acts from the instant at which
+// it is set; the law of friction is decided anew at events only.
+#pragma once
+
+#include "wheel.hpp"
+
+namespace wheel {
+
+inline constexpr int state_count = WHEEL_REDUCED_STATES;
+// One for each event of the table that can occur in model exchange.
+int indicator_count();
+// The place of a variable among the states, or -1.
+int state_index_of(unsigned variable);
+
+// What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
+// for another law at once. Writes run.in_force, run.transitions and demand.news.
+void apply_at_once(Wheel& wheel);
+
+// Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins
+// are those of the flat wheel, which are finite. Rates, margins and events write run.counted.
+void states(Wheel& wheel, double* x);
+void nominals(Wheel& wheel, double* x);
+void derivatives(Wheel& wheel, double* x_dot);
+void indicators(Wheel& wheel, double* z);
+bool has_event(Wheel& wheel);
+
+// Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
+// from a step that they took under the old law, unless the states are called new. Where the model ends here, the run
+// does. Writes run.
+bool decide(Wheel& wheel);
+
+// Whether a run can begin: model exchange has no way to report an end at the start. Else a message.
+bool starts_inside(const Wheel& wheel);
+
+}  // namespace wheel

@@ -1,0 +1,12 @@
+// Co-simulation: a run moves on by one communication step.
+#pragma once
+
+#include "wheel.hpp"
+
+namespace wheel {
+
+// To t, s, own clock. `stepped`: it was reached; `event`: the run ended at run.t; `failed`: the state is that before
+// the call.
+[[nodiscard]] solver::Outcome advance(Wheel& wheel, double t);
+
+}  // namespace wheel
