@@ -1,7 +1,8 @@
 """What a release of wheel.fmu carries as evidence (layered standard FMI-LS-REF), written by the FMU itself under FMPy.
 
-evidence.py FMU FOLDER. For each parameter set an SSV file and the result of 10 s, one serialized state with what must
-come out of it, and the manifest that names them; the bytes are the same on every machine. SI units.
+evidence.py FMU FOLDER. For each parameter set an SSV file, unless the FMU has it already, and the result of 10 s, one
+serialized state with what must come out of it, and the manifest that names them; the bytes are the same on every
+machine. SI units.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ import tomllib
 from pathlib import Path
 
 import fmpy
+from fmpy.ssp.ssd import read_ssv
 from jinja2 import Environment, FileSystemLoader
+
+from wheelfmu.release.fmu import EVIDENCE
 
 HERE = Path(__file__).parent
 SETS = tomllib.loads((HERE / "parameter_sets.toml").read_text(encoding="utf-8"))
@@ -49,9 +53,12 @@ def write(fmu: Path, folder: Path) -> None:
     description = fmpy.read_model_description(place)
     types = {v.name: v.type.replace("Enumeration", "Integer") for v in description.modelVariables}
     for name, kept in SETS.items():
-        values, inputs = kept["values"], kept.get("inputs", {})
-        text = TEMPLATES.get_template("set.ssv.j2").render(name=name, values=values, types=types)
-        (folder / f"{name}.ssv").write_text(text, encoding="utf-8")
+        given, inputs = kept.get("values"), kept.get("inputs", {})
+        file = (folder if given else Path(place) / EVIDENCE) / f"{name}.ssv"
+        if given:
+            text = TEMPLATES.get_template("set.ssv.j2").render(name=name, values=given, types=types)
+            file.write_text(text, encoding="utf-8")
+        values = {parameter.name: parameter.value for parameter in read_ssv(file).parameters}
         for variable, value in inputs.items():
             write_csv(folder / f"{name}_in.csv", ("time", variable), (0, value), (10.0, value))
         run = fmpy.simulate_fmu(place, start_values=values | inputs, stop_time=10.0, output_interval=0.1, **HOW)
