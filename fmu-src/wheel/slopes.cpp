@@ -72,7 +72,7 @@ struct Pass {
     for (std::size_t i = 0; i < count; ++i) {
       const double size = std::fabs(own[i]);
       const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
-      // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is not known better than rounding.
+      // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
       if (likely >= error[i]) continue;
       slope[i] = own[i];
