@@ -1,0 +1,274 @@
+"""Zero as a limit that is reached gradually: ice under ramps of every load, a hold that a ramp ends, a normal force and
+a brake that ramps lead to zero; and every quantity that may be zero, which changes the motion by as much as itself.
+
+Upright, heading along X, R = r_0 + r, I = J_z + m R^2, slip_x = v + R omega_z. SI.
+"""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from support.bounds import absolute_error, beyond, within
+
+from wheelfmu.fmu.driver import OK, Values
+from wheelfmu.truth.closed_forms import rolling_inertia
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import PAPER
+from wheelfmu.truth.schedule import Schedule
+from wheelfmu.truth.sliding import THROWN, UPRIGHT
+
+R, INERTIA, WEIGHT = PAPER.r_0 + PAPER.r, rolling_inertia(PAPER), PAPER.m * PAPER.g
+v = 2.0  # m/s
+ROLLS = {**UPRIGHT, "phi_dot_start": -v / R}
+each_steepness = pytest.mark.parametrize("steep", [1e-9, 1e-5, 1e-2, 10.0])
+each_order = pytest.mark.parametrize("order", [1, 2, 3])
+
+
+def ramp(steep: float, order: int) -> tuple[float, ...]:
+    return (*(0.0 for _ in range(order)), steep)
+
+
+def on_ice(wheel, **inputs):
+    """From rolling at v on a good road, which becomes ice at once; the inputs begin at zero."""
+    w = wheel().start(tolerance=1e-12, mu_max=0.5, mu_slide=0.4, **ROLLS).put(mu_max=0.0)
+    return w.give(inputs).to(1.0)
+
+
+@each_steepness
+@each_order
+def test_on_ice_a_torque_that_begins_at_zero_spins_the_wheel_from_the_first_instant_on(wheel, steep, order):
+    """J_z omega_z' = M_3, and O goes on. On a road that grips the rolling inertia would be turned."""
+    w = on_ice(wheel, M_3=ramp(steep, order))
+    turn = steep / (order + 1) / PAPER.J_z
+    assert w.get("contact_mode") == [1]
+    within(abs((w.get("omega_z")[0] + v / R) / turn - 1), 1e-12 / turn + 1e-9, "spin of the ramp, relative")
+    within(abs(w.get("X_O_dot")[0] - v), 1e-12 + 1e-12 * turn, "change of the velocity, m/s")
+    within(abs(w.get("slip_x")[0] / (R * turn) - 1), 1e-12 / turn + 1e-9, "slip, relative")
+    beyond(abs(PAPER.J_z / INERTIA - 1), 0.1, "spin on a road that grips, relative")
+
+
+@each_steepness
+@each_order
+@pytest.mark.parametrize("axis", ["X", "Y"])
+def test_on_ice_a_force_that_begins_at_zero_moves_O_alone(wheel, steep, order, axis):
+    w = on_ice(wheel, **{f"F_{axis}": ramp(steep, order)})
+    gain = steep / (order + 1) / PAPER.m
+    assert w.get("contact_mode") == [1]
+    along, across = np.array(w.get("X_O_dot", "Y_O_dot")) - (v, 0)
+    own, other = (along, across) if axis == "X" else (across, along)
+    within(abs(own / gain - 1), 1e-12 / gain + 1e-9, "velocity along the force, relative")
+    within(abs(other), 1e-12 + 1e-9 * gain, "velocity across it, m/s")
+    within(abs(w.get("omega_z")[0] + v / R), 1e-12 + 1e-9 * gain, "change of the spin, rad/s")
+
+
+@pytest.mark.parametrize("steep", [1.0, 5.0, 30.0])
+def test_on_ice_a_brake_that_begins_at_zero_stops_the_spin_and_holds_it_while_O_goes_on(wheel, steep):
+    """J_z |omega_z|' = -steep t."""
+    t = sqrt(2 * PAPER.J_z * v / R / steep)
+    w = wheel().start(tolerance=1e-12, mu_max=0.5, mu_slide=0.4, **ROLLS).put(mu_max=0.0).give({"M_brake": (0, steep)})
+    half = w.to(0.5 * t).get("omega_z")[0]
+    within(abs(half + 0.75 * v / R), 1e-10, "spin at half the time, rad/s")
+    w.give({"M_brake": (0, steep)}, 0.5 * t).to(1.5 * t)
+    assert w.get("omega_z", "contact_mode", "friction_mode") == [0.0, 1, 0]
+    within(abs(w.get("X_O_dot")[0] - v), 1e-11, "velocity, m/s")
+    within(abs(w.get("slip_x")[0] - v), 1e-11, "slip, m/s")
+    beyond(v * PAPER.J_z / INERTIA, 0.3, "velocity that a road which grips would take, m/s")
+
+
+@pytest.mark.parametrize("load", ["M_1", "M_2"])
+def test_on_ice_a_moment_across_the_axle_turns_the_wheel_about_O(wheel, load):
+    """At rest: M_2 alone turns the heading, by J_x psi_dot' = M_2; M_1 tips it, and O neither is moved."""
+    start = {**UPRIGHT, "mu_max": 0.5, "mu_slide": 0.4}
+    w = wheel().start(tolerance=1e-12, **start).put(mu_max=0.0).give({load: (0.0, 0.01)}).to(0.5)
+    rate = 0.01 * 0.5**2 / 2 / PAPER.J_x
+    within(np.abs(w.get("X_O", "Y_O", "X_O_dot", "Y_O_dot")).max(), 1e-12, "place and velocity of O")
+    turn, tip = w.get("psi_dot", "theta_dot")
+    if load == "M_2":
+        within(abs(turn / rate - 1), 1e-10, "rate of the heading, relative")
+        within(abs(tip), 1e-12, "tipping, rad/s")
+    else:
+        assert abs(turn) < 1e-12 < rate < abs(tip)
+        within(abs(w.get("slip_y")[0] / (R * tip) - 1), 1e-5, "slip of the contact under O, relative")
+
+
+@pytest.mark.parametrize("mu", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_coefficient_that_falls_towards_zero_leads_to_ice(wheel, mu):
+    """Under a torque that exceeds the grip soon, the velocity gained is mu g t less the begin, and none on ice."""
+
+    def gained(road: float) -> float:
+        w = wheel().start(tolerance=1e-12, mu_max=0.5, mu_slide=0.4, **ROLLS).put(mu_max=road, mu_slide=road)
+        return w.give({"M_3": (0.0, -10.0)}).to(1.0).get("X_O_dot")[0] - v
+
+    grips = mu * PAPER.g * INERTIA / R / 10.0  # s, m R M / I = mu m g
+    expected = mu * PAPER.g * (1 - grips / 2)
+    within(abs(gained(mu) - expected), 1e-3 * expected + 1e-13, "velocity gained, m/s")
+    within(abs(gained(0.0)), 1e-13, "velocity gained on ice, m/s")
+
+
+# ---- what ramps lead to zero, or from it ----
+
+
+@pytest.mark.parametrize("s", [0.03, 1e-3, 1e-6, 1e-9])
+@each_order
+def test_a_ramp_of_torque_ends_a_hold_at_its_capacity_however_small_that_is(wheel, s, order):
+    steep, w = 10.0, wheel().start(tolerance=1e-12, s=s, **UPRIGHT)
+    capacity = s * WEIGHT
+    end = (capacity / steep) ** (1 / order)  # s
+    w.give({"M_3": ramp(steep, order)}).to(1.0)
+    spin = (steep * (1 - end ** (order + 1)) / (order + 1) - capacity * (1 - end)) / INERTIA
+    within(abs(w.get("omega_z")[0] / spin - 1), 1e-9, "spin, relative")
+    if s > 1e-7:  # else what rounding of the moment allows is more; just before and just after its end
+        for t, mode in ((end * (1 - 1e-6), 0), (end * (1 + 1e-6), 1)):
+            other = wheel().start(tolerance=1e-12, s=s, **UPRIGHT).give({"M_3": ramp(steep, order)}).to(t)
+            assert other.get("friction_mode") == [mode]
+
+
+@pytest.mark.parametrize("law", [{}, {"friction_law": 2, "omega_s": 1e-4}], ids=["exact", "regularized"])
+def test_rolling_resistance_goes_with_the_normal_force_to_zero_and_is_none_where_the_ground_pulls(wheel, law):
+    """F_Z = a t lifts: I omega_z' = s (m g - a t) against the spin up to t = m g / a."""
+    a, s = 2 * WEIGHT, 0.01
+    start = {**UPRIGHT, "phi_dot_start": -20.0, "keep_contact": True, "s": s, **law}
+    w = wheel().start(tolerance=1e-11, **start)
+    for t in (0.1, 0.3, 0.45, 0.5 - 1e-6, 0.5 + 1e-6, 0.6, 1.0):
+        w.give({"F_Z": (0.0, a)}, w.time).to(t)
+        until = min(t, 0.5)
+        spin = -20.0 + s * (WEIGHT * until - a * until**2 / 2) / INERTIA
+        within(abs(w.get("omega_z")[0] - spin), 1e-9, f"spin at {t} s, rad/s")
+        assert (w.get("tau")[0] != 0) == (t < 0.5)
+    beyond(s * WEIGHT * 0.5 / INERTIA, 0.1, "spin that a constant normal force would take, rad/s")
+
+
+def test_sliding_friction_goes_with_the_normal_force_to_zero(wheel):
+    """A locked wheel: v' = -mu (g - a t / m) up to lift-off, where the run ends."""
+    a = 2 * WEIGHT
+    start = {**UPRIGHT, "mu_max": 0.5, "mu_slide": 0.4, "slip_x_start": 7.0}
+    w = wheel().start(tolerance=1e-11, **start).put(M_brake=1e4)
+    for t in (0.1, 0.3, 0.499):
+        w.give({"F_Z": (0.0, a)}, w.time).put(M_brake=1e4).to(t)
+        speed = 7.0 - 0.4 * (PAPER.g * t - a / PAPER.m * t**2 / 2)
+        within(abs(w.get("slip_x")[0] - speed), 1e-9, f"slip at {t} s, m/s")
+        within(abs(w.get("lambda_x")[0] + 0.4 * (WEIGHT - a * t)), 1e-7, "force of the road, N")
+    assert w.give({"F_Z": (0.0, a)}, w.time).step(0.1) != OK and "lifted off" in w.sentences[-1]
+
+
+@pytest.mark.parametrize("depth", [0.0, 1e-9, 0.5])
+def test_a_brake_that_falls_to_zero_and_rises_again_takes_what_its_capacity_is_in_between(wheel, depth):
+    """M_brake = 4 (1 - 2 t)^2 - depth: at and below zero it is released."""
+    w = wheel().start(tolerance=1e-12, **{**UPRIGHT, "phi_dot_start": -20.0})
+    root = 0.5 * sqrt(depth / 4)  # s, either side of 0.5 s
+    for t in (0.25, 0.75, 1.0):  # across both zeros
+        w.give({"M_brake": (4.0 - depth, -16.0, 16.0)}, w.time).to(t)
+
+        def impulse(until: float) -> float:
+            return 4 * (1 - (1 - 2 * until) ** 3) / 6 - depth * until
+
+        taken = impulse(min(t, 0.5 - root)) + (impulse(t) - impulse(0.5 + root) if t > 0.5 + root else 0.0)
+        within(abs(w.get("omega_z")[0] + 20.0 - taken / INERTIA), 1e-10, f"spin at {t} s, rad/s")
+    if depth > 0.1:
+        beyond(
+            abs(impulse(0.5 + root) - impulse(0.5 - root)) / INERTIA, 1e-3, "what a brake below zero would give, rad/s"
+        )
+
+
+# ---- every quantity that may be zero ----
+
+LEANING: Values = {"theta_start": 1.25, "psi_dot_start": 0.6, "phi_dot_start": -5.0, "X_O_start": 0.0}
+CARRIED: Values = {"guided": True, "theta_start": 1.2, "phi_dot_start": -5.0, "psi_start": 0.0}
+SLIP: Values = {**LEANING, **THROWN, "mu_max": 0.5, "mu_slide": 0.4}
+BOUNDED: dict[str, tuple[Values, str]] = {
+    "s": (LEANING, "s"),
+    "s, regularized": ({**LEANING, "friction_law": 2, "omega_s": 0.5}, "s"),
+    "s, stiff": ({**LEANING, "friction_law": 2, "omega_s": 1e-6}, "s"),
+    "s of a slide": (SLIP, "s"),
+    "s, guided": (CARRIED, "s"),
+    "slope": (LEANING, "slope"),
+    "slope, guided": (CARRIED, "slope"),
+    "r": (LEANING, "r"),
+    "r of a slide": (SLIP, "r"),
+    "g": ({**LEANING, "keep_contact": True}, "g"),
+    "psi_dot_start": (LEANING, "psi_dot_start"),
+    "theta_dot_start": (LEANING, "theta_dot_start"),
+    "phi_dot_start": (LEANING, "phi_dot_start"),
+    "psi_start": ({**LEANING, "slope": 0.2, "s": 0.01}, "psi_start"),
+    "slope_direction": ({**LEANING, "slope": 0.2, "s": 0.01}, "slope_direction"),
+    "slip_x_start": ({**SLIP, "s": 0.01}, "slip_x_start"),
+    "slip_y_start": ({**SLIP, "s": 0.01}, "slip_y_start"),
+}
+for _load in ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake"):
+    BOUNDED |= {_load: (LEANING, _load), f"{_load} of a slide": (SLIP, _load), f"{_load}, guided": (CARRIED, _load)}
+for _rate in ("psi_dot_guide", "theta_dot_guide"):
+    BOUNDED |= {
+        _rate: (CARRIED, _rate),
+        f"{_rate} of a slide": ({**CARRIED, **THROWN, "mu_max": 0.5, "mu_slide": 0.4}, _rate),
+    }
+OUTPUTS = ("X_O", "Y_O", "theta", "psi", "phi", "theta_dot", "psi_dot", "omega_z", "v_x", "v_y", "slip_x", "slip_y")
+REACTIONS = ("lambda_y", "lambda_3", "M_guide_1", "M_guide_2")
+TIMES = np.linspace(0.0, 0.4, 5)
+
+
+@pytest.mark.parametrize("case", BOUNDED)
+def test_next_to_zero_the_motion_changes_by_as_much_as_the_quantity(library: Library, case: str) -> None:
+    """Linearly down to where the tolerance counts; a branch for zero that is another motion would stay behind."""
+    start, name = BOUNDED[case]
+    start = {key: value for key, value in start.items() if key != name}
+
+    def motion(x: float) -> np.ndarray:
+        run = library.simulate(TIMES, 1e-12, Schedule(), **start, **{name: x})
+        return np.array([run[output] for output in (*OUTPUTS, *(REACTIONS if "guided" in start else ()))])
+
+    at_zero = motion(0.0)
+    moved = {x: absolute_error(motion(x), at_zero) for x in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)}
+    slope = max(moved[1e-2] / 1e-2, moved[1e-4] / 1e-4)
+    beyond(slope, 1e-4, "change over the quantity")
+    for x in (1e-6, 1e-8, 1e-10, 1e-12):
+        within(moved[x], 3 * slope * x + 1e-9, f"change by {x:g}")
+
+
+STEERED: Values = {**CARRIED, "psi_dot_guide": 0.8, "theta_dot_guide": -0.5}
+
+
+@pytest.mark.parametrize("case", ["rolls", "rolls, multibody", "slides", "slides, multibody", "guided"])
+def test_moments_of_inertia_that_become_equal_lead_to_the_simpler_equations(library: Library, case: str) -> None:
+    start = {**(SLIP if "slides" in case else STEERED if case == "guided" else LEANING), "s": 0.01, "phi_start": 0.4}
+    start |= {"formulation": 3} if "multibody" in case else {}
+
+    def motion(difference: float) -> np.ndarray:
+        moments = {"J_x": 0.9 + difference, "J_y": 0.9 - difference, "J_z": 1.5}
+        run = library.simulate(TIMES, 1e-12, Schedule(), **start, **moments)
+        return np.array([run[output] for output in (*OUTPUTS, *REACTIONS)])
+
+    moved = {x: absolute_error(motion(x), motion(0.0)) for x in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)}
+    for x in (1e-4, 1e-6, 1e-8, 1e-10):
+        within(moved[x], 3 * moved[1e-2] / 1e-2 * x + 1e-8, f"change by a difference of {x:g} kg m2")
+    beyond(moved[1e-2], 1e-4, "change by a difference of 0.01 kg m2")
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_torque_that_passes_zero_on_a_good_road_leads_from_one_spin_to_the_other(wheel, side):
+    """Held in between: M_3 = side (4 - 16 t), |M_3| <= s N = 2 N m for a quarter of a second about 0.25 s."""
+    s = 2.0 / WEIGHT
+    w = wheel().start(tolerance=1e-12, s=s, **UPRIGHT)
+    modes, spins = [], []
+    for t in np.linspace(0.02, 1.0, 50):
+        w.give({"M_3": (4.0 * side, -16.0 * side)}, w.time).to(float(t))
+        modes += w.get("friction_mode")
+        spins += w.get("omega_z")
+    # I omega' = side (2 - 16 t) from 0 to 1/8 s, where it is fastest; it stops at 1/4 s and is released at 3/8 s.
+    begin = [k for k, mode in enumerate(modes) if mode == 0]
+    assert set(modes) == {-1, 0, 1} and modes[0] == side and modes[-1] == -side
+    within(abs(spins[4] - side * (2 * 0.1 - 8 * 0.1**2) / INERTIA), 1e-12, "spin at 0.1 s, rad/s")
+    within(abs(0.02 * (begin[0] + 1) - 0.26), 1e-9, "first instant at which it is held, s")
+    within(abs(0.02 * (begin[-1] + 1) - 0.36), 1e-9, "last instant at which it is held, s")
+    left = 1.0 - 0.375
+    within(abs(spins[-1] + side * 8 * left**2 / INERTIA), 1e-9, "spin at 1 s, rad/s")
+
+
+def test_a_heading_of_zero_and_one_of_pi_are_reached_by_a_carrier_that_begins_to_turn_gradually(wheel):
+    """psi_dot_guide = 2 pi t (1 s): psi = pi t^2; lambda_y = m v psi_dot of a wheel that rolls at v."""
+    w = wheel().start(tolerance=1e-11, guided=True, **ROLLS)
+    for t in np.linspace(0.1, 1.0, 10):
+        w.give({"psi_dot_guide": (0.0, 2 * pi)}, w.time).to(float(t))
+        speed = w.get("v_x")[0]
+        within(abs(w.get("psi")[0] - pi * t**2), 1e-11, "heading, rad")
+        within(abs(w.get("lambda_y")[0] - PAPER.m * speed * 2 * pi * t), 1e-9, "lateral force, N")
+    within(abs(w.get("X_O_dot")[0] + speed), 1e-9, "velocity of the turned wheel along X, m/s")
