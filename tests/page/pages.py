@@ -80,13 +80,30 @@ def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
     return np.array(page.evaluate("([i, name]) => [...page.wheels[i].table.columns[name]]", [wheel, name]))
 
 
+def seek(page: Page, t: float) -> None:
+    """A page at the instant t."""
+    page.evaluate("(t) => { page.player.seek(t); page.live?.frame(); page.draw(); }", t)
+
+
 def start(page: Page, at: float = 0.0, **values: float) -> None:
     """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
-    load = "([values, t]) => { page.player.pause(); page.live.load({values}); page.player.seek(t); page.live.frame(); }"
-    page.evaluate(load, [values, at])
+    page.evaluate("(values) => { page.player.pause(); page.live.load({values}); }", values)
+    seek(page, at)
+
+
+def change(page: Page, **values: float) -> None:
+    """Other start values, as by the sliders."""
+    page.evaluate(
+        "(all) => { for (const one of all) page.live.setStart(...one); page.live.frame(); }", [*values.items()]
+    )
 
 
 def do(page: Page, at: float, **values: float) -> None:
     """These values act in the live page from the instant `at` on."""
     act = "([t, all]) => { page.player.seek(t); for (const one of all) page.live.setNow(...one); page.live.compute(); }"
     page.evaluate(act, [at, [*values.items()]])
+
+
+def value(page: Page, name: str) -> float:
+    """A start value of the live page."""
+    return page.evaluate("(name) => page.live.value(name)", name)

@@ -1,8 +1,10 @@
 """What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
 
+import numpy as np
 import pytest
 from page.pages import opened, window_of
 from playwright.sync_api import BrowserContext
+from support.bounds import beyond, within
 
 CAMERA = "[...page.stage.camera.position]"
 
@@ -45,6 +47,25 @@ def test_the_mouse_and_arrow_keys_turn_the_view(either, by):
     either.wait_for_function(moved, arg=before)
     assert either.evaluate("page.player.t") == 0.25
     either.keyboard.press("r")
+
+
+SLOW = """() => new Promise((done) => {
+  const seen = [];
+  page.draw = () => {
+    for (const end = performance.now() + 150; performance.now() < end;);
+    if (seen.push([document.timeline.currentTime / 1000, page.player.t]) < 4) return;
+    delete page.draw;
+    page.player.pause();
+    done(seen);
+  };
+  page.player.play();
+})"""
+
+
+def test_the_clock_keeps_real_time_however_long_a_picture_takes(either):
+    real, shown = np.diff(either.evaluate(SLOW), axis=0).T
+    within(abs(real - shown).max(), 1e-9, "clock off real time from picture to picture, s")
+    beyond(real.min(), 0.1, "time of a picture, s")
 
 
 TOOLTIPS = """all => all.map((x) => [x.title || x.closest('label')?.title || '', x.outerHTML])"""

@@ -48,8 +48,8 @@ WRITTEN = """() => {
   const pen = CanvasRenderingContext2D.prototype;
   const write = pen.fillText;
   const found = [];
-  pen.fillText = function (text, x, y) {
-    const {width} = this.measureText(text);
+  pen.fillText = function (text, x, y, most = Infinity) {
+    const width = Math.min(most, this.measureText(text).width);
     found.push([text, x - {right: width, center: width / 2}[this.textAlign] || x]);
     write.call(this, text, x, y);
   };

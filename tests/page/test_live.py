@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from page.pages import column, do, start
+from page.pages import change, column, do, start
 
 from wheelfmu.fmu.driver import FMU2Wheel
 
@@ -94,8 +94,8 @@ def test_forward_is_the_way_the_wheel_rolls_and_back_is_against_it(live, spin):
 
 def test_an_impossible_start_is_refused_with_the_wheels_own_sentence(live):
     start(live)
-    for r_0, words in ((-1, "r_0"), (0.3, "computed in")):
-        live.evaluate("(r_0) => { page.live.setStart('r_0', r_0); page.live.frame(); }", r_0)
+    for r_0, words in ((-1, "r0 = -1"), (0.3, "computed in")):
+        change(live, r_0=r_0)
         assert words in live.locator("#message").inner_text()
 
 

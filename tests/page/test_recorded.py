@@ -119,7 +119,7 @@ def phases(page: Page, rows: np.ndarray, leave_out: str = "") -> dict[str, list]
 def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
     free, friction = recorded.evaluate("page.wheels.map(({phases}) => phases)")
     begin, end = friction["sticks"][0]
-    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-4, "begin of it, s")  # rows are 0.01 s apart
+    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-3, "begin of it, s")  # rows are 0.01 s apart
     beyond(end, 1.3, "end of the first stick, s")
     assert free == {"sticks": [], "slides": [], "transitions": []}
 

@@ -16,6 +16,7 @@ from wheelfmu.diagrams.start_values import PAPER_S, ROOT, preset, scale, thrown,
 from wheelfmu.diagrams.start_values import bodies as ready_bodies
 from wheelfmu.diagrams.start_values import variables as described
 from wheelfmu.fmu.outputs import fresh
+from wheelfmu.fmu.values import HUB, POINTS, ROUNDING
 from wheelfmu.page.bodies import Body
 
 WEB = Path(__file__).parent / "web"
@@ -74,20 +75,24 @@ def colours() -> dict[str, dict[str, str]]:
 
 
 def moving_wheels() -> dict[str, dict]:
-    """The presets, each with its start: that of its case, or the paper's motion in proportion to its size."""
+    """The presets, each with the plan of a run: that of its case, or the paper's motion in proportion to its size."""
     found = {}
     for name, wheel in wheels().items():
-        body = preset(name)
+        body, case = preset(name), thrown(name)
+        stop = {"stop": case.pop("stop_time")} if case else {}
         scaled = {"phi_dot_start": body["phi_dot_start"], "s": PAPER_S * scale(body, m=1)}
         start = {n: float(f"{value:.3g}") for n, value in scaled.items()} | {"X_O_start": body["X_O_start"]}
-        found[name] = wheel | {"start": thrown(name) or start, "thrown": bool(thrown(name))}
+        plan = {"values": wheel["parameters"] | (case or start)} | stop
+        found[name] = wheel | {"plan": plan, "thrown": bool(case)}
     return found
 
 
 def wheel_itself(wasm: Path) -> dict:
-    """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
+    """What the live page holds: the wheel as a WebAssembly module, presets, bodies and constants."""
     (guid,) = re.findall(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid, "wheels": moving_wheels(), "bodies": ready_bodies()}
+    constants = {"HUB": HUB, "ROUNDING": ROUNDING, "POINTS": POINTS}
+    wheel = {"wasm": base64_of(wasm.read_bytes()), "guid": guid}
+    return wheel | {"wheels": moving_wheels(), "bodies": ready_bodies()} | constants
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:

@@ -5,17 +5,11 @@
 // that is kept beside; `body` gives the moments of inertia of a preset one; `step` is a step of the story. What is not
 // there is as at first.
 import {PORTRAITS} from '#curves';
-import {variables} from '#dom';
-import {degrees, limitsOf, shownLimits} from '#knobs';
+import {DEGREES, degrees, variables} from '#dom';
+import {limitsOf} from '#knobs';
 import {bodies, MOMENTS, momentsOf} from '#mechanics';
 
-const LONGEST = 4000;  // characters
-const REST = 300;      // ms between two changes of the address
-const PLAYING = 1000;  // the same while the clock runs: browsers refuse more than some hundred in half a minute
-const WORDS = {
-  true: 1,
-  false: 0
-};
+const REST = 400;  // ms between two changes of the address: browsers refuse more than some hundred in half a minute
 const NUMBER = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(deg)?$/;
 
 export const EMPTY = {
@@ -32,34 +26,19 @@ function refuse(sentence) { throw new Error(sentence); }
 
 function textOf(name, value) {
   if (variables[name]?.type === 'Boolean') return String(Boolean(value));
-  const angle = Number((value * 180 / Math.PI).toPrecision(10));
+  const angle = Number((value * DEGREES).toPrecision(10));
   return variables[name]?.unit === 'rad' && degrees(angle) === value ? `${angle}deg` : String(value);
-}
-
-/** The number in SI that a reader types into the field of a quantity of knobs.js; throws one sentence. */
-export function typed(text, knob) {
-  const {unit} = knob;
-  const plain = text.trim().replace('−', '-').replace(/\s*(°|deg)$/, '');
-  if (/^[-+]?\d+,\d+$/.test(plain))
-    refuse(`${plain} is no number: decimals follow a point, ${plain.replace(',', '.')}.`);
-  if (!NUMBER.test(plain)) refuse(`${text.trim().slice(0, 20) || 'Nothing'} is no number.`);
-  const [low, high] = shownLimits(knob);
-  if (Number(plain) < low || Number(plain) > high) {
-    const [value, from, to] = [plain, low, high].map((part) => `${part}${unit === '°' ? unit : ''}`);
-    refuse(`${value} is not between ${from} and ${to}${unit && unit !== '°' ? ` ${unit}` : ''}.`);
-  }
-  return unit === '°' ? degrees(Number(plain)) : Number(plain);
 }
 
 /** The number of a text, within limits [lowest, highest]. */
 function numberOf(text, name, limits) {
-  if (variables[name]?.type === 'Boolean' && Object.hasOwn(WORDS, text)) return WORDS[text];
+  if (variables[name]?.type === 'Boolean' && /^(true|false)$/.test(text)) return Number(text === 'true');
   const [, digits, unit] = NUMBER.exec(text) ?? refuse(`${name} = ${text.slice(0, 20)} is no number.`);
   const [low, high] = limits ?? refuse(`it names ${name.slice(0, 30)}, which cannot be set here.`);
   const value = unit ? degrees(Number(digits)) : Number(digits);
   const slack = 1e-9 * Math.max(Math.abs(low), Math.abs(high));
   if (value >= low - slack && value <= high + slack) return value;
-  const scale = unit ? 180 / Math.PI : 1;  // the answer has the unit of the question
+  const scale = unit ? DEGREES : 1;  // the answer has the unit of the question
   const shown = [value, low, high].map((number) => `${Number((number * scale).toPrecision(4))}${unit ? '°' : ''}`);
   return refuse(`${name} = ${shown[0]} is not between ${shown[1]} and ${shown[2]}.`);
 }
@@ -129,23 +108,11 @@ function readShow(text, show) {
   return Object.fromEntries(Object.keys(show).map((name) => [name, wanted.includes(name)]));
 }
 
-/** The parts of an address [{name: text}, those of the motion beside]; each may stand there once. */
+/** The parts of an address {name: text}, and those of the motion beside. */
 function split(text) {
-  if (text.length > LONGEST) refuse(`it has more than ${LONGEST} characters.`);
-  let plain = text;
-  try {
-    plain = decodeURIComponent(text);
-  } catch {  // a stray % stays as it is, and is refused below
-  }
-  const found = [new Map(), new Map()];
-  for (const part of plain.split('&')) {
-    const [, beside, name, value] =
-        /^(kept\.)?(\w+)=([\w.:,+-]+)$/.exec(part) ?? refuse(`${part.slice(0, 30)} is no part of an address.`);
-    const parts = found[beside ? 1 : 0];
-    if (parts.has(name)) refuse(`${name.slice(0, 30)} stands in it twice.`);
-    parts.set(name, value);
-  }
-  return found.map(Object.fromEntries);
+  const parts = [...new URLSearchParams(text.replaceAll('+', '%2B'))];
+  const {kept = [], own = []} = Object.groupBy(parts, ([name]) => (name.startsWith('kept.') ? 'kept' : 'own'));
+  return [own, kept.map(([name, value]) => [name.slice(5), value])].map(Object.fromEntries);
 }
 
 /** {state, step} of an address without #; throws one sentence. steps: the states of the story. */
@@ -179,15 +146,20 @@ export class Link {
   /** The whole link. */
   get href() { return `${location.href.split('#')[0]}#${this.write()}`; }
 
+  /** Writes an address; a page inside another may not, and its button still copies the link. */
+  put(text, how = 'replaceState') {
+    try {
+      history[how](null, '', `#${text}`);
+      this.text = location.hash.slice(1);  // a browser may ignore changes that come too fast
+    } catch {
+    }
+  }
+
   /** What is shown now stays a place of the browser's history, and what comes next is another. */
   leave() {
-    const place = `#${this.write()}`;
-    try {
-      history.replaceState(null, '', place);
-      history.pushState(null, '', place);
-      this.text = location.hash.slice(1);
-    } catch {  // as below
-    }
+    const text = this.write();
+    this.put(text);
+    this.put(text, 'pushState');
   }
 
   /** Shows the state in the address; a wrong one gives the first step of the story and a sentence. */
@@ -205,15 +177,11 @@ export class Link {
   /** Once a frame: writes what has changed. */
   frame() {
     const now = performance.now();
-    if (this.live.wanted || now - this.at < (this.live.page.player.playing ? PLAYING : REST)) return;
+    if (this.live.wanted || now - this.at < REST) return;
     this.at = now;
     const text = this.write();
     // An address that has come and is not followed yet stays, and a wrong one until the reader does something.
     if (text === this.text || this.text !== location.hash.slice(1) || (this.live.refusal && text === 'step=1')) return;
-    try {
-      history.replaceState(null, '', `#${text}`);
-      this.text = location.hash.slice(1);  // a browser may ignore changes that come too fast
-    } catch {  // a page inside another may not change its address; the button still copies the link
-    }
+    this.put(text);
   }
 }

@@ -9,12 +9,10 @@ const TERMS = [
   ['sum', 'sum', 'J_x θ̈'],
 ];
 
-/** Values in tenths, of which the last is the sum of the others: the largest of them takes what rounding leaves. */
+/** Values in tenths, of which the last is the sum of the others. */
 function tenths(values) {
-  const [sum, ...terms] = values.map((value) => Math.round(10 * value)).reverse();
-  const largest = terms.reduce((best, value, i) => (Math.abs(value) > Math.abs(terms[best]) ? i : best), 0);
-  terms[largest] += sum - terms.reduce((total, value) => total + value, 0);
-  return [...terms.reverse(), sum].map((value) => fixed(value / 10, 1));
+  const terms = values.slice(0, -1).map((value) => Math.round(10 * value));
+  return [...terms, terms.reduce((sum, value) => sum + value)].map((value) => fixed(value / 10, 1));
 }
 
 /** The moments about e1 as bars beside the picture of what rights the wheel: to the right those that right it. */

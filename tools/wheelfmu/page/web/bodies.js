@@ -8,21 +8,13 @@ import {bendTurn, dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeText
 import {before, contactOf, extent, slipOf} from '#table';
 import {THREE} from 'three';
 
-const [METAL, FACE] = [['#9aa2ac', '#6a7078', 40], ['#8d949f', '#8a9098', 60]].map(
-    ([color, specular, shininess]) => ({color, specular, shininess}));
+const metal = (color, specular, shininess) => ({color, specular, shininess});
+const [METAL, FACE] = [metal('#9aa2ac', '#6a7078', 40), metal('#8d949f', '#8a9098', 60)];
+const GOLD = metal('#c2a04e', '#8d7a45', 60);
 const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
-const GOLD = {
-  color: '#c2a04e',
-  specular: '#8d7a45',
-  shininess: 60
-};
-const UPRIGHT = [Math.PI / 2, 0, 0];  // a cylinder's axis along z
-const ABOUT_E1 = {
-  weight: 0.5,
-  side: 0.7,
-  gyro: 0.9,
-  sum: 1.12
-};  // radii of their arrows, in those of the wheel
+const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
+// Arrows of the moments about e1, and their radii in those of the wheel.
+const ABOUT_E1 = Object.entries({weight: 0.5, side: 0.7, gyro: 0.9, sum: 1.12});
 const COIN = 0.05;  // m, up to which a disc is a coin
 const BEND = 4;     // rad, of a moment m g r_0
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
@@ -127,16 +119,11 @@ export class WheelModel {
           `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
     }
     this.carrier = new THREE.Group().add(this.body, this.axes, ...(look.held ? makeFork(look) : []));
-    [this.force, this.slip, this.weight, this.side, this.guide] =
-        ['--force', '--slide', '--weight', '--side', '--guide'].map((name) => makeArrow(0.03 * r_0, colour(name)));
+    this.force = makeArrow(0.03 * r_0, colour('--force'));
+    [this.slip, this.weight, this.side, this.guide] =
+        ['--slide', '--weight', '--side', '--guide'].map((name) => makeArrow(0.03 * r_0, colour(name), true));
     this.guideName = makeLabel('M_guide', colour('--guide'), 0.3 * r_0);
-    for (const part of [this.slip, this.weight, this.side, this.guide].flatMap(
-             ({children}) => children)) {  // before the wheel
-      Object.assign(part, {renderOrder: 910, castShadow: false});
-      Object.assign(part.material, {depthTest: false, transparent: true});
-    }
-    this.turns = Object.entries(ABOUT_E1).map(
-        ([name, part]) => [name, makeTurn(part * radius, 0.06 * radius, colour(`--${name}`))]);
+    this.turns = ABOUT_E1.map(([name, part]) => [name, makeTurn(part * radius, 0.06 * radius, colour(`--${name}`))]);
     this.moments = new THREE.Group().add(...this.turns.map(([, turn]) => turn));
     const [e1, e2, e3] = [0, 1, 2].map((i) => new THREE.Vector3().setComponent(i, 1));
     this.moments.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(e2, e3, e1));

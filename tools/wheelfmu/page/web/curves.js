@@ -1,9 +1,9 @@
 // What the diagrams show: curves over time, of which a scene has those that belong to it, and portraits: the phase
 // portrait, the angular velocity along the carrier axes e2 and e3, or the path of the contact point from above.
+import {DEGREES} from '#dom';
 import {criticalSpin} from '#mechanics';
 import {contactOf, extent} from '#table';
 
-const DEGREES = 180 / Math.PI;
 const POSE = ['X_O', 'Y_O', 'psi', 'theta'];
 
 /** A kind of diagram: the columns it needs, and its point [x, y] from their values and the wheel. */

@@ -2,15 +2,12 @@
 // angular velocity along the carrier axes e2 and e3, or the path of the contact point from above. They share the clock,
 // and keep their axes while the reader pushes the wheel. The future is drawn faintly. Angles in degrees, all else SI.
 import {CURVES, PORTRAITS} from '#curves';
-import {clearCanvas, colour, fixed, make, makeChoice, subscripted} from '#dom';
+import {clearCanvas, colour, fixed, make, makeChoice, subscripted, write} from '#dom';
 import {before, extent} from '#table';
 
-const [LEFT, RIGHT, TOP, BOTTOM] = [46, 8, 10, 20];  // margins, CSS pixels; on the left at the least
+const [LEFT, RIGHT, TOP, BOTTOM] = [48, 8, 10, 20];  // margins, CSS pixels
 const SMALL = 0.5;                                   // of a unit, below which values are in thousandths
-const MANY = 3;                                      // wheels, whose values still fit beside the title
-const [TITLE, VALUE] = [60, 52];                     // CSS pixels, of the title and of a value beside it
-const LETTER = 7.5;  // CSS pixels, of a digit below the title, with a share of the gap between values
-const BAR = 4;       // CSS pixels, where held or sliding
+const BAR = 4;                                       // CSS pixels, where held or sliding
 const DASHES = [5, 4];
 const FONT = '11px system-ui, sans-serif';
 
@@ -130,23 +127,15 @@ class Diagram {
     const {clientWidth: width, clientHeight: height} = this.canvas;
     if (this.figure.hidden || !width) return;
     this.lines = this.wheels.map((wheel) => this.line(wheel));
-    const count = this.lines.reduce((sum, {points: [point]}) => sum + point.length - 1, 0);
-    this.many = this.timed && (count > MANY || width < TITLE + 6 * this.kind.symbol.length + VALUE * count);
-    this.figure.classList.toggle('many', this.many);
     Object.assign(this, {width, height, pen: clearCanvas(this.canvas, width, height)});
     Object.assign(this, {ink: colour('--ink'), paper: colour('--paper')});
-    this.left = LEFT;
-    for (const again of this.kind.even ? [false, true] : [false]) {  // one scale: the limits follow the margin
-      this.sizes = [width - this.left - RIGHT, height - TOP - BOTTOM];
-      this.range(axis);
-      if (!again) this.makeRoom();
-    }
-    this.sizes = [width - this.left - RIGHT, height - TOP - BOTTOM];
+    this.sizes = [width - LEFT - RIGHT, height - TOP - BOTTOM];
+    this.range(axis);
     for (const [name, canvas] of Object.entries(this.layers)) {
       const pen = clearCanvas(canvas, width, height);
       const faint = name === 'faint';
       if (faint) this.grid(pen);
-      pen.rect(this.left, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
+      pen.rect(LEFT, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
       pen.clip();
       if (faint && this.secret) continue;
       if (this.timed) this.bands(pen, faint ? 0.4 : 1);
@@ -183,18 +172,12 @@ class Diagram {
     return ticks.map((tick) => [tick, fixed(tick, digits)]);
   }
 
-  /** The margin on the left takes the widest of them. */
-  makeRoom() {
-    this.pen.font = FONT;
-    this.left = Math.max(LEFT, ...this.marks.map(([, text]) => Math.ceil(this.pen.measureText(text).width) + 8));
-  }
-
   /** How far along the axis across (0) or up (1) a value lies, in CSS pixels. */
   along(side, value) {
     return (value - this.ranges[side][0]) * (this.sizes[side] / (this.ranges[side][1] - this.ranges[side][0]));
   }
 
-  x(value) { return this.left + this.along(0, value); }
+  x(value) { return LEFT + this.along(0, value); }
 
   y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
@@ -219,17 +202,17 @@ class Diagram {
 
   timeAt(x) {
     const {start, end} = this.player;
-    return start + ((x - this.left) / this.sizes[0]) * (end - start);
+    return start + ((x - LEFT) / this.sizes[0]) * (end - start);
   }
 
   /** Lines and numbers of both axes; over time the last number has the unit, and there are no lines across. */
   grid(pen) {
     const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
     pen.fillStyle = colour('--rule');
-    for (const [tick] of this.marks) pen.fillRect(this.left, Math.round(this.y(tick)), this.sizes[0], 1);
+    for (const [tick] of this.marks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
     for (const tick of this.timed ? [] : across.ticks) pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
     Object.assign(pen, {font: FONT, fillStyle: colour('--soft'), textAlign: 'right', textBaseline: 'middle'});
-    for (const [tick, text] of this.marks) pen.fillText(text, this.left - 6, Math.round(this.y(tick)) + 0.5);
+    for (const [tick, text] of this.marks) pen.fillText(text, LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
@@ -247,13 +230,10 @@ class Diagram {
     for (const value of levels.filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1])) {
       const y = Math.round(this.y(value)) + 0.5;
       pen.beginPath();
-      pen.moveTo(this.left, y);
-      pen.lineTo(this.left + this.sizes[0], y);
+      pen.moveTo(LEFT, y);
+      pen.lineTo(LEFT + this.sizes[0], y);
       pen.stroke();
-      for (const [i, text] of ['ω', 'crit'].entries()) {
-        pen.font = i ? FONT.replace('11', '8') : FONT;
-        pen.fillText(text, this.left + this.sizes[0] - 26 + 9 * i, y + 2 * i);
-      }
+      write(pen, 'ω_crit', LEFT + this.sizes[0] - 26, y, 11);
     }
     pen.setLineDash([]);
   }
@@ -323,19 +303,14 @@ class Diagram {
     if (this.timed) this.show(present.flatMap(([, ...all], k) => all.map((value) => [value, this.wheels[k].colour])));
   }
 
-  /**
-   * The values [[number, colour], ...] in the caption; of many wheels in a line below the title, with the digits that
-   * have room.
-   */
+  /** The values [[number, colour], ...] in the caption. */
   show(values) {
-    const {many} = this;
     const size = Math.max(...this.ranges[1].map(Math.abs));  // what is small has more digits
-    const least = size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0;
-    const texts = (digits) => values.map(([value]) => (isFinite(value) ? fixed(value, digits) : '–'));
-    let digits = Math.max(0, this.kind.digits - Number(many), least);
-    while (many && digits > 0 && LETTER * texts(digits).join(' ').length > this.width) digits -= 1;
-    this.values.replaceChildren(...texts(digits).map(
-        (text, i) => make('span', {style: `color: color-mix(in srgb, ${values[i][1]} 70%, var(--ink))`}, text)));
+    const digits = Math.max(this.kind.digits, size < 1 ? Math.min(8, Math.ceil(2 - Math.log10(size))) : 0);
+    this.values.replaceChildren(...values.map(([value, own]) => {
+      const style = `color: color-mix(in srgb, ${own} 70%, var(--ink))`;
+      return make('span', {style}, isFinite(value) ? fixed(value, digits) : '–');
+    }));
   }
 }
 

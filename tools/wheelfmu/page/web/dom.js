@@ -8,6 +8,11 @@ export const $ = (selector, host = document) => host.querySelector(selector);
  */
 export const {bodies, sources, variables, live} = JSON.parse($('#data').textContent);
 
+export const DEGREES = 180 / Math.PI;  // to a radian
+
+/** An angle in rad as a slider gives it. */
+export const degrees = (angle) => angle / DEGREES;
+
 /** A new element with these properties and children. */
 export function make(tag, properties, ...children) {
   const element = Object.assign(document.createElement(tag), properties);
@@ -24,10 +29,29 @@ export function makeChoice(row, options, act) {
   return onChange((chosen) => buttons.forEach((button, i) => (button.ariaChecked = options[i].name === chosen)));
 }
 
-export const SUBSCRIPT = /_(crit|guide|max|slide|.)/;
+const SUBSCRIPT = /_(crit|guide|max|slide|\w(?!\w))/;  // not that of a variable's name, theta_start
 
 /** A text such as ω_z or ω_crit as nodes, with its subscript. */
 export const subscripted = (text) => text.split(SUBSCRIPT).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
+
+/** Writes a text with its subscripts on a canvas, beginning at x, in a font of size $; returns where it ends. */
+export function write(pen, text, x, y, size, font = '$ system-ui, sans-serif') {
+  text.split(SUBSCRIPT).forEach((part, i) => {
+    const low = i % 2;
+    pen.font = font.replace('$', `${size * (low ? 0.7 : 1)}px`);
+    pen.fillText(part, x, y + 0.22 * size * low);
+    x += pen.measureText(part).width;
+  });
+  return x;
+}
+
+/** Shows a text in an element, or hides the element; writes only what is new. */
+export function say(host, text) {
+  host.hidden = !text;
+  if (host.said === text) return;
+  host.said = text;
+  host.replaceChildren(...subscripted(text ?? ''));
+}
 
 /** A number with the sign of mathematics, none of a zero. */
 export const fixed = (value, digits) => value.toFixed(digits).replace(/^-([0.]+)$/, '$1').replace('-', '−');

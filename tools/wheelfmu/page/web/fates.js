@@ -1,7 +1,6 @@
 // The map of fates: what becomes of a wheel in ten seconds, over the lean and the spin that it starts with, without
 // precession. The pointer over a point of the map plays that wheel.
-import {$, clearCanvas, colour} from '#dom';
-import {degrees} from '#knobs';
+import {$, clearCanvas, colour, DEGREES, degrees} from '#dom';
 import {criticalSpin} from '#mechanics';
 import {extent} from '#table';
 
@@ -19,7 +18,7 @@ export function fateOf(fmu, values) {
   const {table: {columns: {theta}}, ended} =
       fmu.run({values, changes: [], stop: STOP, record: ['theta'], interval: INTERVAL});
   if (ended) return Math.min(theta.at(-1), Math.PI - theta.at(-1)) < FLAT ? 90 : OTHER;
-  return extent(theta.map((angle) => Math.abs(angle - Math.PI / 2)))[1] / degrees(1);
+  return extent(theta.map((angle) => Math.abs(angle - Math.PI / 2)))[1] * DEGREES;
 }
 
 /** Sets up the map; returns what goes on with it, once a frame. */
@@ -57,7 +56,7 @@ export function setUpFates(live) {
     pen.lineTo(size[0] / SPINS, size[1]);
     pen.stroke();
     const [theta, rate] = ['theta_start', 'phi_dot_start'].map((name) => live.value(name));
-    const [x, y] = [Math.abs(rate) / (SPINS * spin), 1 - Math.abs(90 - theta / degrees(1)) / MOST];
+    const [x, y] = [Math.abs(rate) / (SPINS * spin), 1 - Math.abs(90 - theta * DEGREES) / MOST];
     pen.setLineDash([]);
     pen.beginPath();
     pen.arc(x * size[0], y * size[1], 5, 0, 7);

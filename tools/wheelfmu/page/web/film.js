@@ -1,12 +1,8 @@
 // Pictures of the page: the scene with its labels above, the diagrams beneath, as one PNG or as a video, whose
 // pictures are drawn at instants of the motion and written into a WebM file with these instants.
-import {$, colour, make, SUBSCRIPT} from '#dom';
+import {$, colour, make, write} from '#dom';
 
-/** Kinds of video: the width in pixels, at most that of the scene on the screen, and frames per second. */
-export const FILMS = {
-  small: {text: 'small: 640 pixels wide', width: 640, rate: 20},
-  large: {text: 'as large as on the screen', width: Infinity, rate: 30},
-};
+const RATE = 25;         // pictures per second
 const BITS = 8_000_000;  // per second
 const CODEC = 'vp09.00.51.08';
 const KEY = 60;  // pictures from one that stands alone to the next
@@ -15,16 +11,6 @@ const GAP = 10;  // CSS pixels
 /** Whether this browser encodes films. */
 export async function encodes() {
   return (await window.VideoEncoder?.isConfigSupported({codec: CODEC, width: 640, height: 360}))?.supported;
-}
-
-/** A text such as "ω_z rad/s" with its subscript. */
-function write(pen, text, x, y, size) {
-  text.split(SUBSCRIPT).forEach((part, i) => {
-    const low = i % 2 === 1;
-    pen.font = `${low ? 0.72 * size : size}px system-ui, sans-serif`;
-    pen.fillText(part, x, low ? y + 0.22 * size : y);
-    x += pen.measureText(part).width;
-  });
 }
 
 /** The wheels' labels where they stand over the scene. */
@@ -57,8 +43,7 @@ export function compose(page, canvas = make('canvas')) {
   pen.drawImage(stage.canvas, 0, 0, width, height);
   Object.assign(pen, {textBaseline: 'middle', textAlign: 'left'});
   drawLabels(pen, page);
-  const instant = `t = ${player.t.toFixed(2)} s`;
-  write(pen, instant, width - 16 - pen.measureText(instant).width, height - 20, 15);
+  write(pen, `t = ${player.t.toFixed(2)} s`, width - 106, height - 20, 15);
   for (const plot of plots.all.filter(({figure}) => !figure.hidden)) {
     const place = plot.canvas.getBoundingClientRect();
     const [x, y] = [scale * (place.left - host.left), height + GAP + scale * (place.top - host.top)];
@@ -99,7 +84,7 @@ function webm({width, height}, pictures, duration) {
 }
 
 /** A canvas encoded by WebCodecs: {add(k), end(), pictures}. */
-function streamOf(canvas, rate) {
+function streamOf(canvas) {
   const {width, height} = canvas;
   const pictures = [];
   const output = (chunk) => {
@@ -108,9 +93,9 @@ function streamOf(canvas, rate) {
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
   const encoder = new VideoEncoder({output, error: console.error});
-  encoder.configure({codec: CODEC, width, height, bitrate: BITS, framerate: rate});
+  encoder.configure({codec: CODEC, width, height, bitrate: BITS, framerate: RATE});
   const add = (k) => {
-    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / rate)});
+    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
     encoder.encode(picture, {keyFrame: k % KEY === 0});
     picture.close();
   };
@@ -119,31 +104,29 @@ function streamOf(canvas, rate) {
 
 /**
  * A video of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
- * draw. kind: of FILMS; left(seconds): called before each picture with the time that the rest will take; false ends it.
+ * draw. left(seconds): called before each picture with the time that the rest will take; false ends it.
  */
-export async function film(page, {width, rate}, left) {
+export async function film(page, left) {
   const {player, stage} = page;
   const {start, end, speed, t} = player;
-  const [canvas, ratio] = [make('canvas'), stage.ratio];
+  const canvas = make('canvas');
   const show = (instant) => {
     player.seek(instant);
     page.draw();
     compose(page, canvas);
   };
   player.pause();
-  stage.ratio = Math.min(ratio, width / stage.canvas.clientWidth);
   show(start);
-  const {add, end: finish, pictures} = streamOf(canvas, rate);
-  const count = Math.floor((end - start) / speed * rate) + 1;
+  const {add, end: finish, pictures} = streamOf(canvas);
+  const count = Math.floor((end - start) / speed * RATE) + 1;
   const begin = performance.now();
   let k = 0;
   for (; k < count && left((performance.now() - begin) / 1000 / k * (count - k)); ++k) {
-    show(start + k * speed / rate);
+    show(start + k * speed / RATE);
     add(k);
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
-  stage.ratio = ratio;
   player.seek(t);
   await finish();
-  return webm(canvas, pictures, 1000 * k / rate);
+  return webm(canvas, pictures, 1000 * k / RATE);
 }

@@ -1,13 +1,9 @@
 // What the reader of the live page can set: sliders with numbers beside them, buttons, and within which limits a number
 // or an address may set the rest. The sliders' ranges follow the wheel.
-import {variables} from '#dom';
+import {DEGREES, variables} from '#dom';
 import {criticalSpin} from '#mechanics';
 
-const DEGREES = 180 / Math.PI;
 const ROUND = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 10];
-
-/** An angle in rad as a slider gives it. */
-export const degrees = (angle) => angle / DEGREES;
 
 /** The next round number at or above a positive one. */
 function roundUp(value) {

@@ -3,8 +3,8 @@
 import {derive, EMPTY, Link, sameMotions} from '#address';
 import {variables} from '#dom';
 import {STEP} from '#fmu';
-import {limitsOf, STEERING} from '#knobs';
-import {MOMENTS, nutation} from '#mechanics';
+import {STEERING} from '#knobs';
+import {MOMENTS, nutation, POINTS} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
 import {extent} from '#table';
@@ -16,8 +16,7 @@ const SIGNALS = [
 ];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
-const POINTS = 40;
-const FINEST = 12;  // parts of STEP, at most
+const FINEST = 12;                 // parts of STEP, at most
 const NAMES = ['This wheel', 'Kept'];
 
 /** The part of STEP, s, that gives nutation and turn POINTS rows a period; a guided wheel has neither. */
@@ -33,24 +32,12 @@ function intervalOf({columns: {theta, psi_dot, omega_z}}, wheel) {
  * What the reader has chosen: plan, what is done to the wheel; kept: the plan of the motion beside, or null; step 0, 1
  * ... of the story, if it is open; guess: what the reader expects of a step that asks, or null: {asks: not played yet,
  * picked: number of the fate, told: whether the motion has shown it}; scene: the number of the one that was loaded.
- * refusal, trouble: why an address or a start cannot be; scaled: what a preset has set; wanted: whether the motion is
- * still to be computed.
+ * refusal, trouble: why an address or a start cannot be; wanted: whether the motion is still to be computed.
  */
 export class LiveWheel {
   /** wheels: the presets. */
   constructor(page, fmu, wheels) {
-    Object.assign(this, {
-      page,
-      fmu,
-      plan: EMPTY.plan,
-      kept: null,
-      step: 0,
-      open: true,
-      scene: null,
-      refusal: null,
-      scaled: null,
-      guess: null
-    });
+    Object.assign(this, {page, fmu}, {plan: EMPTY.plan, kept: null, step: 0, open: true, guess: null});
     this.steps = chapters(this.parameters());
     this.wheel = {name: 'live', label: NAMES[0]};
     page.bodies.push(this.wheel);
@@ -121,7 +108,7 @@ export class LiveWheel {
       page.offer(page.bodies.length);
     }
     page.plots.axis = axis;
-    Object.assign(this, {wanted: true, scene: null, refusal: null, scaled: null});
+    Object.assign(this, {wanted: true, scene: null, refusal: null});
     this.tell();
   }
 
@@ -153,15 +140,11 @@ export class LiveWheel {
     this.change('fitted');
   }
 
-  /** A preset wheel with its start: the paper's motion in proportion to its size, or how a case is thrown. */
-  setWheel({parameters, start, thrown}) {
-    const friction = this.value('s') > 0;
-    const own = Object.entries(start).filter(([name]) => limitsOf(name) && (name !== 's' || thrown || friction));
-    Object.assign(this.plan.values, parameters, Object.fromEntries(own));
-    this.plan.body = null;
-    this.change('fitted');
-    const set = `φ̇ is ${start.phi_dot_start} rad/s now${friction ? `, and s is ${start.s} m` : ''}.`.replace('-', '−');
-    this.scaled = thrown ? null : `As fast for its size as the paper's wheel: ${set}`;
+  /** A preset wheel from its own start; without friction where there is none now, unless it is thrown. */
+  setWheel({plan, thrown}) {
+    const {s, ...values} = plan.values;
+    this.load({...plan, values: thrown || this.value('s') > 0 ? plan.values : values});
+    Object.assign(this, {scene: null, refusal: null});
     this.page.player.seek(0);
   }
 
@@ -220,7 +203,7 @@ export class LiveWheel {
     page.stage.stand(balance ? 'behind' : 'beside');
     page.player.set({t, speed});
     [this.step, this.open, this.text] = [step ?? this.step, step !== null, text?.(...page.wheels)];
-    [this.scene, this.refusal, this.scaled] = [null, null, null];
+    [this.scene, this.refusal] = [null, null];
     this.show();
   }
 

@@ -3,45 +3,38 @@
 // given ones, as in tools/wheelfmu/fmu/values.py; the critical spin. SI.
 import {live} from '#dom';
 
-const HUB = 0.1;        // of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube
-const ROUNDING = 1e-9;  // of a moment: an excess that is no fault
-
-/** {name: {title, source, J_x, J_z}}: the moments over m, as parts of the squares of lengths. */
-export const bodies = live?.bodies ?? {};
+/**
+ * bodies {name: {title, source, J_x, J_z}}: the moments over m, as parts of the squares of lengths; HUB, ROUNDING and
+ * POINTS of values.py.
+ */
+export const {bodies = {}, HUB, ROUNDING, POINTS} = live ?? {};
 export const MOMENTS = ['J_x', 'J_y', 'J_z'];
 
 /** {J_x, J_y, J_z} of a body. */
 export function momentsOf(name, {m, r_0, r}) {
   const lengths = {r_0, r, R: r_0 + r};
-  const [J_x, J_z] = ['J_x', 'J_z'].map((moment) => {
-    const terms = Object.entries(bodies[name][moment]).map(([length, part]) => {
-      const [above, below = 1] = part.split('/').map(Number);
-      return above / below * (lengths[length] * lengths[length]);
-    });
-    return m * terms.reduce((sum, term) => sum + term, 0);
-  });
+  const term = ([length, part]) => {
+    const [above, below = 1] = part.split('/');
+    return above / below * (lengths[length] * lengths[length]);
+  };
+  const [J_x, J_z] = ['J_x', 'J_z'].map(
+      (moment) => m * Object.entries(bodies[name][moment]).map(term).reduce((sum, value) => sum + value, 0));
   return {J_x, J_y: J_x, J_z};
 }
 
-const short = (value) => String(Number(value.toPrecision(4)));
-
 /** One sentence if no mass within the outline, the convex hull of the torus, has these moments; else null. */
 export function doubtOf({m, r_0, r, J_x, J_y, J_z}) {
-  const across = (J_x + J_y - J_z) / 2;  // m times the mean square of the distance from the wheel's plane
-  const slack = ROUNDING * (J_x + J_y + J_z);
-  const [widest, width] = [m * (r_0 + r) ** 2, Math.max(r, HUB * (r_0 + r))];
-  const [about, beside] = [`J_z = ${short(J_z)} kg m² is more than`, `(J_x + J_y − J_z)/2 = ${short(across)} kg m²`];
-  if (J_z > widest + slack)
-    return `${about} m (r_0 + r)² = ${short(widest)} kg m²: no mass within the wheel's radius has this moment.`;
-  if (across > m * width ** 2 + slack) {
-    const limit = width === r ? 'm r²' : `m (${HUB} (r_0 + r))²`;
-    return `${beside} is more than ${limit} = ${
-        short(m * width ** 2)} kg m²: so far from its plane the wheel has no mass.`;
-  }
-  const most = m * (r_0 + Math.sqrt(Math.max(r * r - across / m, 0))) ** 2;
-  if (across <= m * r * r && J_z > most + slack)
-    return `${about} ${short(most)} kg m²: no mass within the wheel's outline has it together with ${beside}.`;
-  return null;
+  const across = Math.max(0, (J_x + J_y - J_z) / 2);  // m times the mean square of the distance from the wheel's plane
+  const apart = Math.sqrt(Math.max(r * r - across / m, 0));
+  const widest = across <= m * r * r ? r_0 + apart : r_0 + r;  // beyond a thin tube are hub and spokes
+  const faults = [
+    ['J_z', J_z, m * widest ** 2],
+    ['(J_x + J_y − J_z)/2', across, m * Math.max(r, HUB * (r_0 + r)) ** 2],
+  ];
+  const fault = faults.find(([, moment, most]) => moment > most + ROUNDING * (J_x + J_y + J_z));
+  if (!fault) return null;
+  const [moment, most] = fault.slice(1).map((value) => Number(value.toPrecision(4)));
+  return `${fault[0]} = ${moment} kg m² is more than ${most} kg m²: no mass within the wheel's outline has it.`;
 }
 
 /**

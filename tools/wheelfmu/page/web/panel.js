@@ -1,8 +1,7 @@
 // The controls of the live page: the story or the scenes to begin with, the start, and what the reader does to the
 // wheel while it rolls. Each sets up its elements and returns a function that shows the present state.
-import {typed} from '#address';
 import {setUpBalance} from '#balance';
-import {$, fixed, make, makeButton, makeChoice, onChange, subscripted} from '#dom';
+import {$, DEGREES, fixed, make, makeButton, makeChoice, onChange, say, subscripted} from '#dom';
 import {setUpFates} from '#fates';
 import {GRIP, HELD, NOW, shownLimits, START, STEERING, torqueOf, WHEEL} from '#knobs';
 import {bodies, criticalSpin, doubtOf} from '#mechanics';
@@ -27,7 +26,7 @@ function setUpScenes(live) {
       all.map(({label, about = 'A scene of the paper'}, name) => ({name, textContent: label, title: about}));
   const mark = makeChoice($('#presets'), options, (scene) => {
     live.link.leave();
-    $('#about').replaceChildren(...subscripted(all[scene].about ?? ''));
+    say($('#about'), all[scene].about);
     live.page.player.seek(0);
     live.load(all[scene].plan);
     Object.assign(live, {scene, refusal: null});
@@ -46,28 +45,23 @@ function setUpScenes(live) {
  */
 function makeKnob(host, knob, {take, present, hold = () => {}}) {
   const {name, symbol, unit, what, range} = knob;
-  const [low, high] = shownLimits(knob);
-  const scale = unit === '°' ? 180 / Math.PI : 1;
+  const [min, max] = shownLimits(knob);
+  const scale = unit === '°' ? DEGREES : 1;
   const about = what.replace('_', '');
   const slider = make('input', {type: 'range', name, id: `slider_${name}`});
-  const title = `${about}: type a number from ${low} to ${high} ${unit}`;
-  const number = make('input', {className: 'number', inputMode: 'decimal', autocomplete: 'off', spellcheck: false});
-  Object.assign(number, {name: `${name}_number`, title, ariaLabel: title});
-  const answer = make('p', {className: 'note trouble', role: 'alert', hidden: true});
+  const title = `${about}: type a number from ${min} to ${max} ${unit}`;
+  const looks = {type: 'number', className: 'number', autocomplete: 'off', step: 'any', required: true, min, max};
+  const number = make('input', {...looks, name: `${name}_number`, title, ariaLabel: title});
   const words = make(
       'label', {htmlFor: slider.id}, make('b', {}, make('i', {}, ...subscripted(symbol))), ' ',
       make('small', {}, ...subscripted(what)));
-  host.append(make('div', {className: 'knob'}, words, slider, number, make('span', {}, unit), answer));
+  host.append(make('div', {className: 'knob'}, words, slider, number, make('span', {}, unit)));
   let ratios = false;
   const place = (value) => (ratios ? Math.log10(value) : value * scale);
   const at = (position) => (ratios ? Number((10 ** position).toPrecision(3)) : position / scale);
-  const reply = (sentence) => {
-    [answer.textContent, answer.hidden, number.ariaInvalid] = [sentence, !sentence, String(Boolean(sentence))];
-  };
   const write = () => {
     const value = Number((present(name) * scale).toPrecision(6));
     number.value = value && Math.abs(value) < 1e-3 ? value.toExponential() : value;  // as short as the field is wide
-    reply('');
   };
   let before = 0;  // a finger that scrolls the page has first moved the slider that it began on
   slider.oninput = () => take(name, at(Number(slider.value)));
@@ -80,15 +74,8 @@ function makeKnob(host, knob, {take, present, hold = () => {}}) {
     take(name, at(before));
     hold(false);
   };
-  number.onchange = () => {
-    try {
-      take(name, typed(number.value, knob));
-      write();
-    } catch ({message}) {  // the text stays, to be mended
-      reply(message);
-    }
-  };
-  number.onblur = () => answer.hidden && write();
+  number.onchange = () => number.reportValidity() && take(name, number.value / scale);
+  number.onblur = () => number.validity.valid && write();  // else the text stays, to be mended
   number.onkeydown = ({key}) => {
     if (key === 'Escape') write();
     if (['Enter', 'Escape'].includes(key)) number.blur();
@@ -99,9 +86,9 @@ function makeKnob(host, knob, {take, present, hold = () => {}}) {
     if (shown === [value, from, to].join()) return;
     shown = [value, from, to].join();
     ratios = step === 'log';
-    const [min, max] = ratios ? [from, to].map(place) : [from, to];
-    Object.assign(slider, {min, max, step: ratios ? 0.01 : step, title: `${about}: ${from} to ${to} ${unit}`});
-    slider.value = place(value);
+    const [least, most] = ratios ? [from, to].map(place) : [from, to];
+    Object.assign(slider, {min: least, max: most, step: ratios ? 0.01 : step});
+    Object.assign(slider, {title: `${about}: ${from} to ${to} ${unit}`, value: place(value)});
     if (document.activeElement !== number) write();
   };
 }
@@ -143,15 +130,11 @@ function setUpReady(live, wheels) {
   const group = (label, kind, list) => make('optgroup', {label}, ...Object.entries(list).map(option(kind)));
   const none = make('option', {value: ''}, 'Preset bodies and wheels …');
   host.append(none, group('Bodies: J follows from m, r₀ and r', 'body', bodies), group('Wheels', 'wheel', wheels));
-  host.addEventListener('change', ({target: {value}}) => {
-    const [kind, name] = value.split(':');
+  host.onchange = () => {
+    const [kind, name] = host.value.split(':');
     if (kind === 'body') live.setBody(name);
-    if (kind !== 'wheel') return;
-    const [, before] = Object.entries(wheels).find(same) ?? [];
-    Object.keys(before?.thrown ? before.start : {})
-        .forEach((other) => delete live.plan.values[other]);  // the throw goes with its wheel
-    live.setWheel(wheels[name]);
-  });
+    if (kind === 'wheel') live.setWheel(wheels[name]);
+  };
   const shown = onChange((value) => {
     host.value = value;
     host.title = host.selectedOptions[0].title || 'Preset bodies and wheels, with their sources';
@@ -180,65 +163,53 @@ function setUpCarrier(live) {
 /** Where the present spin is beside the critical one, which a guided wheel has not. */
 function setUpCritical(live) {
   const host = $('#critical');
-  const write = onChange((text) => host.replaceChildren(...subscripted(text)));
   return (wheel) => {
-    host.hidden = live.value('guided') > 0;
     const [now, limit] = [(name) => live.wheel.table.value(name, live.instant()), criticalSpin(wheel)];
-    const [spin, lean] = [Math.abs(now('omega_z')), Math.abs(now('theta') * 180 / Math.PI - 90)];
+    const [spin, lean] = [Math.abs(now('omega_z')), Math.abs(now('theta') * DEGREES - 90)];
     const apart = live.slides ? 'slides' : lean > NEAR ? `leans by ${lean.toFixed(0)}°` : null;
     const side = spin > limit ? 'above' : 'below';
     host.dataset.side = apart ? 'none' : side;
     const [is, needed] = [`Now |ω_z| = ${spin.toFixed(2)} rad/s`, `ω_crit = ${limit.toFixed(2)} rad/s`];
-    write(
-        apart ?
-            `${is}. ${needed} is for a wheel that rolls nearly upright; this one ${apart}.` :
-            `${is}, ${side} ${needed}: upright rolling on a level road is ${spin > limit ? 'stable' : 'unstable'}.`);
+    const kind = spin > limit ? 'stable' : 'unstable';
+    const text = apart ? `${is}. ${needed} is for a wheel that rolls nearly upright; this one ${apart}.` :
+                         `${is}, ${side} ${needed}: upright rolling on a level road is ${kind}.`;
+    say(host, wheel.guided ? '' : text);
   };
 }
 
 /** The friction coefficient that rolling needs beside the static one, or the slip. */
 function setUpGrip(live) {
   const host = $('#grip-now');
-  const write = onChange((text) => host.replaceChildren(...subscripted(text)));
   const open = onChange((limited) => ($('#grip').open = limited));
   return ({mu_max, mu_slide}) => {
     open(mu_max > 0);
-    const {wheel: {table}} = live;
+    const {wheel: {table}, slides} = live;
     const now = (name) => table.value(name, live.instant());
     const needed = Math.hypot(now('lambda_1'), now('lambda_2')) / now('lambda_3');
-    host.hidden = !(needed >= 0);
-    if (host.hidden) return;
     const [along, across] = ['slip_x', 'slip_y'].map((name) => fixed(now(name), 2));
     const slip = slipOf(table, live.instant()).toFixed(2);
-    host.dataset.state = live.slides ? 'slides' : 'rolls';
-    write(
-        live.slides ?
-            `It slides at ${slip} m/s (${along} along, ${across} across); the road gives μ_slide = ${mu_slide} of N.` :
-            `Rolling needs μ = ${needed.toFixed(3)} now${mu_max > 0 ? `, of μ_max = ${mu_max}` : ''}.`);
+    host.dataset.state = slides ? 'slides' : 'rolls';
+    const text = slides ?
+        `It slides at ${slip} m/s (${along} along, ${across} across); the road gives μ_slide = ${mu_slide} of N.` :
+        `Rolling needs μ = ${needed.toFixed(3)} now${mu_max > 0 ? `, of μ_max = ${mu_max}` : ''}.`;
+    say(host, needed >= 0 ? text : '');
   };
 }
 
 /** The message on the last run and on a wrong address, and the box that keeps a motion. */
 function setUpNotes(live) {
-  $('#keep').addEventListener('change', ({target}) => live.keep(target.checked));
-  const [message, refusal, doubt, scaled] = ['#message', '#refusal', '#doubt', '#scaled'].map((place) => {
-    const host = $(place);
-    return onChange((text) => {
-      host.hidden = !text;
-      host.replaceChildren(...(place === '#doubt' ? subscripted(text ?? '') : [text ?? '']));
-    });
-  });
+  const [keep, message, refusal, doubt] = ['#keep', '#message', '#refusal', '#doubt'].map((place) => $(place));
+  keep.onchange = () => live.keep(keep.checked);
   return (wheel) => {
+    keep.checked = Boolean(live.kept);
     const seconds = Number(live.wheel.table.end.toPrecision(4));
-    message(live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
-    $('#message').classList.toggle('trouble', Boolean(live.trouble));
-    $('#keep').checked = Boolean(live.kept);
-    refusal(live.refusal);
+    say(message, live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
+    message.classList.toggle('trouble', Boolean(live.trouble));
+    say(refusal, live.refusal);
     const fault = doubtOf(wheel);
     const chance = tipsByRounding(live.wheel.table) &&
         'Rounding alone tips this exactly upright wheel and decides time and side. On its wheel carrier (guided) it stays upright.';
-    doubt(fault ? `${fault} Choose a body: its moments follow.` : chance || null);
-    scaled(live.scaled);
+    say(doubt, fault ? `${fault} Choose a body: its moments follow.` : chance || '');
   };
 }
 

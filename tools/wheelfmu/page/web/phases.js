@@ -1,36 +1,10 @@
 // When the rolling friction holds the wheel, and when it slides: stick phases and transitions, read off friction_mode
-// (or the sign of omega_z) and n_events, the wheel's own count of transitions. A transition lies between two rows; its
-// instant is where omega_z, carried on from the rows on a rolling side, is zero.
+// (or the sign of omega_z) and n_events, the wheel's own count of transitions.
 
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
 function modeAt(table, row) {
   const source = table.columns.friction_mode ?? table.columns.omega_z;
   return Math.sign(source[row]);
-}
-
-/** The zeros of the parabola through three points (t, y); NaN where there is none. */
-function zerosOfParabola(t, y) {
-  const slope = (y[1] - y[0]) / (t[1] - t[0]);
-  const bend = ((y[2] - y[1]) / (t[2] - t[1]) - slope) / (t[2] - t[0]);
-  const b = slope - bend * (t[0] + t[1]);
-  const c = y[0] - slope * t[0] + bend * t[0] * t[1];
-  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(b * b - 4 * bend * c));  // no difference of equal numbers
-  return [c / q, q / bend];
-}
-
-/**
- * Where omega_z, carried on through rows first to first + 2, is zero between rows k and k + 1; undefined if nowhere.
- */
-function zeroBetween(table, k, first) {
-  const {time, rows, columns: {omega_z: omega}} = table;
-  const three = [first, first + 1, first + 2];
-  if (!omega || first < 0 || first + 2 >= rows) return undefined;
-  const [mode, ...modes] = three.map((row) => modeAt(table, row));
-  if (mode === 0 || modes.some((other) => other !== mode)) return undefined;
-  const step = time[k + 1] - time[k];
-  const zeros = zerosOfParabola(three.map((row) => time[row] - time[k]), three.map((row) => omega[row]));
-  const zero = zeros.find((t) => t >= -0.02 * step && t <= 1.02 * step);
-  return zero === undefined ? zero : time[k] + Math.min(step, Math.max(0, zero));
 }
 
 /**
@@ -56,17 +30,21 @@ function slidesOf(table) {
 }
 
 /**
- * The instants of the n transitions between rows k and k + 1: the first and the last from the rolling rows on their
- * side, where there are such, the others evenly between them.
+ * The instants of the n transitions between rows k and k + 1: the first and the last where omega_z, carried on in a
+ * line from two rolling rows on their side, is zero, if there are such; the others evenly between them.
  */
 function instants(table, k, n) {
-  const [low, high] = [table.time[k], table.time[k + 1]];
-  const [before, after] = [zeroBetween(table, k, k - 2), zeroBetween(table, k, k + 1)];
-  if (n === 1) return [before ?? after ?? 0.5 * (low + high)];
-  const even = (high - low) / (n + 1);
-  let [first, last] = [before ?? low + even, after ?? high - even];
-  if (first > last) [first, last] = [low + even, high - even];
-  return Array.from({length: n}, (_, i) => first + ((last - first) * i) / (n - 1));
+  const {time, columns: {omega_z}} = table;
+  const [low, high, even] = [time[k], time[k + 1], (time[k + 1] - time[k]) / (n + 1)];
+  const zeroOf = (a, b, otherwise) => {
+    const t = time[a] - omega_z?.[a] * (time[b] - time[a]) / (omega_z?.[b] - omega_z?.[a]);
+    const near = modeAt(table, a) === modeAt(table, b) && t > low - even && t < high + even;
+    return near ? Math.min(high, Math.max(low, t)) : otherwise;
+  };
+  const end = zeroOf(k + 1, k + 2, high - even);
+  const begin = zeroOf(k - 1, k, n === 1 ? end : low + even);
+  const [first, last] = begin > end ? [low + even, high - even] : [begin, end];
+  return Array.from({length: n}, (_, i) => first + (last - first) * (i / (n - 1) || 0));
 }
 
 /**

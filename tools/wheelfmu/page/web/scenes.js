@@ -2,10 +2,10 @@
 // with. Each step is a scene; its text takes every figure from the scene's own motion. wheel: {table, phases}; other:
 // the motion that is kept beside. A scene is written as the address that shows it (address.js).
 import {read} from '#address';
+import {DEGREES} from '#dom';
 import {balance, criticalSpin} from '#mechanics';
 import {extent} from '#table';
 
-const DEGREES = 180 / Math.PI;
 const angle = (value) => (DEGREES * value).toFixed(1);
 /** The largest lean of a motion from upright, in degrees. */
 const lean = ({table}) => angle(extent(table.columns.theta.map((theta) => Math.abs(theta - Math.PI / 2)))[1]);

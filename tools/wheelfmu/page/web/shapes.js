@@ -1,5 +1,5 @@
 // Shapes of the scene: solids, arrows, ribbons on the ground, texts, and pictures to cover them. Metres; Z up.
-import {make} from '#dom';
+import {make, write} from '#dom';
 import {THREE} from 'three';
 
 /** A picture, drawn with draw(pen), for a surface. */
@@ -19,10 +19,15 @@ export function makeSolid(geometry, material, place = [0, 0, 0], angles = [0, 0,
   return solid;
 }
 
-/** An arrow from the origin along +z, of length 1 until `pointArrow` is called; shaft radius in m. */
-export function makeArrow(radius, color) {
-  const shaft = makeSolid(new THREE.CylinderGeometry(radius, radius, 1, 20).rotateX(Math.PI / 2), {color});
-  const head = makeSolid(new THREE.ConeGeometry(2.6 * radius, 7 * radius, 24).rotateX(Math.PI / 2), {color});
+/**
+ * An arrow from the origin along +z, of length 1 until `pointArrow` is called; shaft radius in m; before: seen through
+ * what is before it.
+ */
+export function makeArrow(radius, color, before = false) {
+  const look = {color, depthTest: !before, transparent: before};
+  const shaft = makeSolid(new THREE.CylinderGeometry(radius, radius, 1, 20).rotateX(Math.PI / 2), look);
+  const head = makeSolid(new THREE.ConeGeometry(2.6 * radius, 7 * radius, 24).rotateX(Math.PI / 2), look);
+  for (const part of before ? [shaft, head] : []) Object.assign(part, {renderOrder: 910, castShadow: false});
   return Object.assign(new THREE.Group().add(shaft, head), {userData: {shaft, head, headLength: 7 * radius}});
 }
 
@@ -41,6 +46,7 @@ export function pointArrow(arrow, vector) {
 }
 
 const ARC = 120;  // parts of a full turn
+const SERIF = 'italic 600 $ Georgia, "Times New Roman", serif';
 
 /** A flat arrow about the axis z, from x towards y, of this radius and width in m; seen through what is before it. */
 export function makeTurn(radius, width, color) {
@@ -88,15 +94,12 @@ export const showRibbon = (ribbon, row) => ribbon.geometry.setDrawRange(0, 6 * M
 
 /** A short text that always faces the reader, such as uphill or e_1 with its subscript; height in m. */
 export function makeLabel(text, colour, height) {
-  const [name, low = ''] = text.split('_');
-  const width = Math.max(128, 40 * name.length) + 26 * Math.max(0, low.length - 1);
+  const width = Math.max(128, 40 * text.length);
   const map = makeTexture(width, 96, (pen) => {
-    Object.assign(pen, {textBaseline: 'middle', textAlign: 'left', fillStyle: colour});
-    const fonts = ['italic 600 72px', '600 46px'].map((font) => `${font} Georgia, "Times New Roman", serif`);
-    const lengths = [name, low].map((part, i) => Object.assign(pen, {font: fonts[i]}).measureText(part).width);
-    const left = Math.max(0, (width - lengths[0] - lengths[1]) / 2);
-    Object.assign(pen, {font: fonts[0]}).fillText(name, left, 48, width);
-    Object.assign(pen, {font: fonts[1]}).fillText(low, left + lengths[0], 64);
+    Object.assign(pen, {textBaseline: 'middle', fillStyle: colour});
+    const length = write(pen, text, 0, 48, 72, SERIF);
+    pen.clearRect(0, 0, width, 96);
+    write(pen, text, (width - length) / 2, 48, 72, SERIF);
   });
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, transparent: true}));
   label.scale.set((height * width) / 96, height, 1);

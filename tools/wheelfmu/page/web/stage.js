@@ -83,8 +83,6 @@ export class Stage {
   /** Pixels of the picture to one of CSS. */
   get ratio() { return this.renderer?.getPixelRatio() ?? 1; }
 
-  set ratio(value) { this.renderer?.setPixelRatio(value); }
-
   addSun() {
     this.sun = new THREE.DirectionalLight('#fff6e8', 2.3);
     this.sun.castShadow = true;

@@ -2,7 +2,7 @@
 // same run.
 import {commands} from '#commands';
 import {$, make, makeChoice} from '#dom';
-import {compose, encodes, film, FILMS} from '#film';
+import {compose, encodes, film} from '#film';
 
 const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const FIXED = ['r_0', 'r', 'slope', 'slope_direction'];
@@ -61,7 +61,6 @@ export function setUpTaking(page) {
     const name = `wheel_${page.player.t.toFixed(2)}s.png`;
     compose(page).toBlob((blob) => save(name, blob), 'image/png');
   });
-  $('[name=size]', host).append(...Object.entries(FILMS).map(([value, {text}]) => make('option', {value}, text)));
   let filming = false;
   on('film', async ({currentTarget: button}) => {  // a second click ends it
     filming = !filming;
@@ -70,7 +69,7 @@ export function setUpTaking(page) {
       button.textContent = `End the video${seconds < Infinity ? `: ${Math.ceil(seconds)} s left` : ''}`;
       return filming;
     };
-    const blob = await film(page, FILMS[$('[name=size]', host).value], left);
+    const blob = await film(page, left);
     filming = false;
     button.textContent = 'Video (WebM)';
     save('wheel.webm', blob);
