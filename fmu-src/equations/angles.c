@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "carrier.h"
+#include "frame.h"
 
 typedef uint64_t Bits __attribute__((vector_size(sizeof(Two))));
 #define ALL UINT64_MAX
@@ -13,13 +13,13 @@ typedef uint64_t Bits __attribute__((vector_size(sizeof(Two))));
 
 /* An angle less n quarter turns, and what `angle` rounds off. */
 typedef struct Remainder {
-  double angle, rest;
+  double angle, tail;
   int n;
 } Remainder;
 
 /* False, rarely, where the quarter turns need more digits of pi. */
 static inline int remainder_of(double x, Remainder* out) {
-  const double quarter = 1.57079632673412561417e+00, quarter_rest = 6.07710050650619224932e-11; /* 33 + 53 bits */
+  const double quarter = 1.57079632673412561417e+00, quarter_tail = 6.07710050650619224932e-11; /* 33 + 53 bits */
   const double size = fabs(x), per_rad = 6.36619772367581382433e-01;
   double r, w;
   int n = 1;
@@ -28,18 +28,18 @@ static inline int remainder_of(double x, Remainder* out) {
   if (!(size < 0x1p19)) return 0;
   if (size < 0x1.2d97cp1) { /* 3 pi/4: the tilt of most wheels */
     r = size - quarter;
-    w = quarter_rest;
+    w = quarter_tail;
   } else {
     n = (int)(size * per_rad + 0.5);
     r = size - n * quarter;
-    w = n * quarter_rest;
+    w = n * quarter_tail;
   }
-  double angle = r - w, rest = (r - angle) - w;
-  *out = x < 0 ? (Remainder){-angle, -rest, -n} : (Remainder){angle, rest, n};
+  double angle = r - w, tail = (r - angle) - w;
+  *out = x < 0 ? (Remainder){-angle, -tail, -n} : (Remainder){angle, tail, n};
   return fabs(angle) > size * 0x1p-16;
 }
 
-/* With z = x^2: sin x = x + z x P(z), cos x = (1 - z/2) + z^2 Q(z), and the parts of first order in the rest of x. */
+/* With z = x^2: sin x = x + z x P(z), cos x = (1 - z/2) + z^2 Q(z), and the parts of first order in the tail of x. */
 Sines wheel_sines(double angle) {
   static const Two PQ[] = {{-1.66666666666666324348e-01, 4.16666666666666019037e-02},
                            {8.33333333332248946124e-03, -1.38888888888741095749e-03},
@@ -52,7 +52,7 @@ Sines wheel_sines(double angle) {
   Remainder of;
   if (!remainder_of(angle, &of)) return (Sines){sin(angle), cos(angle)};
   const double x = of.angle, z = x * x, half = 0.5 * z, most = 1 - half;
-  const Two large = {x, most}, small = {of.rest - half * of.rest, ((1 - most) - half) - x * of.rest};
+  const Two large = {x, most}, small = {of.tail - half * of.tail, ((1 - most) - half) - x * of.tail};
   const Two zz = {z, z}, z_4 = zz * zz, factor = {z * x, z * z};
   const Two pq = (PQ[0] + zz * PQ[1]) + z_4 * ((PQ[2] + zz * PQ[3]) + z_4 * (PQ[4] + zz * PQ[5]));
   const Two sines = large + (factor * pq + small), turned = {sines[1], sines[0]};
@@ -67,9 +67,9 @@ double wheel_less_turns(double angle) {
   const double pi = 3.141592653589793;
   if (fabs(angle) <= pi) return angle;
   /* The nearest multiple of a rounded 2 pi is off by less than 1e-4 rad; sine and cosine of the whole angle are not. */
-  double rest = remainder(angle, 2 * pi);
-  for (int i = 0; i < 2; ++i) rest += sin(angle) * cos(rest) - cos(angle) * sin(rest);
-  return rest;
+  double less = remainder(angle, 2 * pi);
+  for (int i = 0; i < 2; ++i) less += sin(angle) * cos(less) - cos(angle) * sin(less);
+  return less;
 }
 
 double wheel_angle_of(double x, double y) {

@@ -1,4 +1,4 @@
-/* The formulation of model exchange: the reduced equations in the paper's own variables, Euler angles and their rates.
+/* The formulation of model exchange: the reduced equations in the paper's variables, Euler angles and their rates.
  * State y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z; fixed axes, SI. Nothing of it is computed anew when
  * it is read, so a state that was set is read back to the bit. Domain: 0 < theta < pi, see wheel_equations.h. */
 #include <math.h>

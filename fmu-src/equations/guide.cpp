@@ -25,7 +25,7 @@ double spin_after(double spin, double free, double friction) {
 }  // namespace
 
 // Where friction bends the ramp, by the midpoint rule in many parts.
-void wheel_turn(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion) {
+void wheel_jump(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion) {
   const WheelParameters& w = scene->wheel;
   const double s = std::sin(motion->theta), c = std::cos(motion->theta), rho = w.r_0 + w.r * s;
   const double lean = std::fabs(c) < 1e-15 ? 0 : c, eta = w.r * lean;  // of an upright wheel it is rounding

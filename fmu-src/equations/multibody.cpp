@@ -70,8 +70,8 @@ Matrix63 B_tilde(const Multibody& s, double kappa) {
   return B_tilde;
 }
 
-// (15), generalised: weight (tilted on a slope), F at O (fixed axes), M turned from the carrier into body axes by
-// [phi]^T.
+// (15), generalised: weight (tilted on a slope), F at O (fixed axes), M turned from the non-spinning frame into body
+// axes by [phi]^T.
 Vector6 F(const Multibody& s, const WheelLoad& load) {
   const Matrix3 phi = rotation_z(s.attitude.sin_phi, s.attitude.cos_phi);
   Vector6 F;
@@ -156,16 +156,16 @@ Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
 // A wheel carrier turns psi and theta: these two constraints stand in the place of the moments across the axle, where
 // alone their multipliers act.
 void guide(const WheelLoad& load, Matrix9& K, Vector9& column) {
-  const Vector2 turn(load.turn);
-  column -= K.middleCols<2>(3) * turn;
-  column.segment<2>(3) = turn;
+  const Vector2 given(load.guide);
+  column -= K.middleCols<2>(3) * given;
+  column.segment<2>(3) = given;
   K.middleRows<2>(3).setZero();
   K.middleCols<2>(3).setZero();
   K.block<2, 2>(3, 3).setIdentity();
 }
 
-// Solution of (24) and the moment of ground and brake about the axle. The determinant of a wheel that slides, if held
-// times what a unit of tau adds to omega_z_dot, is that without sliding friction times WheelSlip.room.
+// Solution of (24) and the moment of ground and brake about the axle. The determinant of a wheel that slides is that
+// without sliding friction times WheelSlip.room; of a held one both are times what a unit of tau adds to omega_z_dot.
 struct Solution {
   Vector9 unknowns;  // q_ddot, lambda
   double tau, determinant;

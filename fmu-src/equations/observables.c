@@ -2,7 +2,7 @@
  * axes, required friction coefficient. Fixed axes unless said. */
 #include <math.h>
 
-#include "carrier.h"
+#include "frame.h"
 
 double wheel_height(const WheelParameters* wheel, double theta) { return wheel->r_0 * sin(theta) + wheel->r; }
 
@@ -12,9 +12,9 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* k) {
   double omega_x = k->psi_dot * s * sin_phi + k->theta_dot * cos_phi;
   double omega_y = k->psi_dot * s * cos_phi - k->theta_dot * sin_phi;
   double v_squared = k->X_O_dot * k->X_O_dot + k->Y_O_dot * k->Y_O_dot + k->Z_O_dot * k->Z_O_dot;
-  double turning =
+  double rotation =
       wheel->J_x * omega_x * omega_x + wheel->J_y * omega_y * omega_y + wheel->J_z * k->omega_z * k->omega_z;
-  return 0.5 * (wheel->m * v_squared + turning) +
+  return 0.5 * (wheel->m * v_squared + rotation) +
          wheel->m * (wheel->g * k->Z_O - wheel->g_X * k->X_O - wheel->g_Y * k->Y_O);
 }
 
@@ -71,12 +71,12 @@ double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment
 void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* k, const WheelDynamics* d, double out[2]) {
   const WheelParameters* w = &scene->wheel;
   const double y[] = {k->theta, k->theta_dot, k->psi_dot * sin(k->theta), k->omega_z, k->psi, k->phi};
-  Carrier c = carrier_of(w, y);
+  Frame f = frame_of(w, y);
   Inertia I = inertia_of(w, k->phi);
-  Moment M = moment_of(scene, &I, &c);
-  double omega_2_dot = guided_rate(&c, d->psi_ddot), force[2];
+  Moment M = moment_of(scene, &I, &f);
+  double omega_2_dot = guided_rate(&f, d->psi_ddot), force[2];
   wheel_horizontal_force(k, d->lambda, force);
-  out[0] = I.I_11 * d->theta_ddot + I.p * omega_2_dot - M.M_1 + w->r_0 * c.cos_theta * d->lambda[2] -
+  out[0] = I.I_11 * d->theta_ddot + I.p * omega_2_dot - M.M_1 + w->r_0 * f.cos_theta * d->lambda[2] -
            wheel_height(w, k->theta) * force[1];
-  out[1] = I.p * d->theta_ddot + I.I_22 * omega_2_dot - M.M_2 + c.eta * force[0];
+  out[1] = I.p * d->theta_ddot + I.I_22 * omega_2_dot - M.M_2 + f.eta * force[0];
 }

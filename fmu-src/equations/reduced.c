@@ -1,12 +1,12 @@
 /* The reduced formulation, plain C: Newton and Euler about O for any principal moments of inertia, the constraints
- * solved in advance; equivalent to the paper's (24). Carrier frame e1, e2, e3, see wheel_equations.h.
+ * solved in advance; equivalent to the paper's (24). Non-spinning frame e1, e2, e3, see wheel_equations.h.
  *
- * The reaction R (carrier) is eliminated from m a = F + R and dH/dt = M + c x R + tau e3, where c = (0, -rho, -eta)
- * points from O to the contact. docs/equations.md derives every line. State and geometry: carrier.h. */
+ * The reaction R is eliminated from m a = F + R and dH/dt = M + c x R + tau e3, where c = (0, -rho, -eta)
+ * points from O to the contact. docs/equations.md derives every line. State and geometry: frame.h. */
 #include <math.h>
 #include <string.h>
 
-#include "carrier.h"
+#include "frame.h"
 
 /* The terms of Newton's and Euler's equations without omega_dot: the force k = m b - F, N (b: acceleration of O without
  * its part in omega_dot, F: external force, weight included), and the external less the gyroscopic moment, N m. */
@@ -36,48 +36,48 @@ typedef struct AxleLaw {
 } AxleLaw;
 
 /* (load, inertia, geometry, omega) => k, moment */
-static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Carrier* c) {
+static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Frame* f) {
   const WheelParameters* w = &scene->wheel;
   double F_1, F_h, F_Z = scene->load.F[2]; /* {F} of (15): along e1, across it, and across the road */
-  double b_1 = c->omega_1 * (w->r_0 * c->omega_2 - c->eta * c->phi_dot);
-  double b_2 = w->r * c->sin_theta * (c->omega_1 * c->omega_1) + c->Omega_3 * c->v_1 - c->omega_1 * c->v_3;
-  double b_3 = c->eta * (c->omega_1 * c->omega_1) + c->omega_1 * c->v_2 - c->omega_2 * c->v_1;
-  road_force(scene, c, &F_1, &F_h);
+  double b_1 = f->omega_1 * (w->r_0 * f->omega_2 - f->eta * f->phi_dot);
+  double b_2 = w->r * f->sin_theta * (f->omega_1 * f->omega_1) + f->Omega_3 * f->v_1 - f->omega_1 * f->v_3;
+  double b_3 = f->eta * (f->omega_1 * f->omega_1) + f->omega_1 * f->v_2 - f->omega_2 * f->v_1;
+  road_force(scene, f, &F_1, &F_h);
   return (Drift){
       .k_1 = w->m * b_1 - F_1,
-      .k_2 = w->m * (b_2 + w->g * c->sin_theta) - (c->cos_theta * F_h + c->sin_theta * F_Z),
-      .k_3 = w->m * (b_3 + w->g * c->cos_theta) - (c->cos_theta * F_Z - c->sin_theta * F_h),
-      .M = moment_of(scene, I, c),
+      .k_2 = w->m * (b_2 + w->g * f->sin_theta) - (f->cos_theta * F_h + f->sin_theta * F_Z),
+      .k_3 = w->m * (b_3 + w->g * f->cos_theta) - (f->cos_theta * F_Z - f->sin_theta * F_h),
+      .M = moment_of(scene, I, f),
   };
 }
 
 /* (inertia, geometry, drift) => the system, N for tau = 0 */
-static inline System system_of(const WheelParameters* w, const Inertia* I, const Carrier* c, const Drift* d) {
-  double rho_2 = w->m * (c->rho * c->rho), eta_2 = w->m * (c->eta * c->eta);
+static inline System system_of(const WheelParameters* w, const Inertia* I, const Frame* f, const Drift* d) {
+  double rho_2 = w->m * (f->rho * f->rho), eta_2 = w->m * (f->eta * f->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
-  double h_1 = d->M.M_1 - c->rho * d->k_3 + c->eta * d->k_2;
-  double h_2 = d->M.M_2 - c->eta * d->k_1;
+  double h_1 = d->M.M_1 - f->rho * d->k_3 + f->eta * d->k_2;
+  double h_2 = d->M.M_2 - f->eta * d->k_1;
   System s = {
-      .a_23 = -(w->m * (c->eta * c->rho)),
+      .a_23 = -(w->m * (f->eta * f->rho)),
       .a_33 = w->J_z + rho_2,
       .b_2 = h_2,
-      .h_3 = d->M.M_3 + c->rho * d->k_1,
+      .h_3 = d->M.M_3 + f->rho * d->k_1,
       .omega_1_dot = h_1 * inverse,
   };
-  double lift = w->m * w->r_0 * c->cos_theta; /* what a unit of omega_1_dot adds to N */
-  double turned = I->I_22;                    /* I_22 - p^2 / a_11 > 0 */
+  double lift = w->m * w->r_0 * f->cos_theta; /* what a unit of omega_1_dot adds to N */
+  double across = I->I_22;                    /* I_22 - p^2 / a_11 > 0 */
   if (I->p != 0) {
-    turned -= I->p * I->p * inverse;
+    across -= I->p * I->p * inverse;
     s.b_2 -= I->p * inverse * h_1;
   }
-  s.b_22 = turned + eta_2;
-  s.inverse_determinant = 1.0 / (s.b_22 * w->J_z + turned * rho_2); /* b_22 a_33 - a_23^2: nothing cancels */
+  s.b_22 = across + eta_2;
+  s.inverse_determinant = 1.0 / (s.b_22 * w->J_z + across * rho_2); /* b_22 a_33 - a_23^2: nothing cancels */
   if (I->p != 0) {
     s.omega_1_dot -= I->p * inverse * ((s.a_33 * s.b_2 - s.a_23 * s.h_3) * s.inverse_determinant);
     s.tilt_per_tau = I->p * inverse * (s.a_23 * s.inverse_determinant);
     s.alpha = lift * s.tilt_per_tau;
   }
-  s.N = d->k_2 * c->sin_theta + d->k_3 * c->cos_theta + lift * s.omega_1_dot;
+  s.N = d->k_2 * f->sin_theta + d->k_3 * f->cos_theta + lift * s.omega_1_dot;
   return s;
 }
 
@@ -110,27 +110,27 @@ static inline Accelerations move(const System* s, AxleLaw law) {
   return solve(s, &law);
 }
 
-/* On its wheel carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
-static inline Accelerations move_guided(const WheelScene* scene, const Carrier* c, const Drift* d, AxleLaw law) {
+/* On a wheel carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
+static inline Accelerations move_guided(const WheelScene* scene, const Frame* f, const Drift* d, AxleLaw law) {
   const WheelParameters* w = &scene->wheel;
-  double omega_1_dot = scene->load.turn[1], omega_2_dot = guided_rate(c, scene->load.turn[0]);
-  double rise = w->r_0 * (c->cos_theta * omega_1_dot - c->sin_theta * (c->omega_1 * c->omega_1)); /* m/s2 */
+  double omega_1_dot = scene->load.guide[1], omega_2_dot = guided_rate(f, scene->load.guide[0]);
+  double rise = w->r_0 * (f->cos_theta * omega_1_dot - f->sin_theta * (f->omega_1 * f->omega_1)); /* m/s2 */
   double N = w->m * (w->g + rise) - scene->load.F[2];
-  double h_3 = d->M.M_3 + c->rho * (d->k_1 + w->m * (c->eta * omega_2_dot));
+  double h_3 = d->M.M_3 + f->rho * (d->k_1 + w->m * (f->eta * omega_2_dot));
   if (!(N > 0 || law.branch_kept)) law.lever = 0;
   double tau = law.held ? -h_3 : -(law.lever * N + law.brake);
   return (Accelerations){
       .omega_1_dot = omega_1_dot,
       .omega_2_dot = omega_2_dot,
-      .omega_3_dot = law.held ? 0.0 : (h_3 + tau) / (w->J_z + w->m * (c->rho * c->rho)),
+      .omega_3_dot = law.held ? 0.0 : (h_3 + tau) / (w->J_z + w->m * (f->rho * f->rho)),
       .N = N,
       .tau = tau,
   };
 }
 
-/* One state under a load, ready for a law of friction. Inlined as the carrier is. */
+/* One state under a load, ready for a law of friction. Inlined as the frame is. */
 typedef struct Instant {
-  Carrier carrier;
+  Frame frame;
   Drift drift;
   System system; /* unless guided */
 } Instant;
@@ -139,20 +139,20 @@ typedef struct Instant {
 INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
-  Instant now = {.carrier = carrier_of(w, y)};
-  now.drift = drift_of(scene, &inertia, &now.carrier);
-  if (!guided) now.system = system_of(w, &inertia, &now.carrier, &now.drift);
+  Instant now = {.frame = frame_of(w, y)};
+  now.drift = drift_of(scene, &inertia, &now.frame);
+  if (!guided) now.system = system_of(w, &inertia, &now.frame, &now.drift);
   return now;
 }
 
 /* (instant, omega_dot) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
 static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
-  const Carrier* c = &now->carrier;
-  double R_1 = now->drift.k_1 + w->m * (c->eta * a->omega_2_dot - c->rho * a->omega_3_dot);
-  double R_2 = now->drift.k_2 - w->m * (c->eta * a->omega_1_dot);
-  double R_3 = now->drift.k_3 + w->m * (c->rho * a->omega_1_dot);
-  double R_h = c->cos_theta * R_2 - c->sin_theta * R_3; /* horizontal, across e1 */
-  to_fixed(c, R_1, R_h, &lambda[0], &lambda[1]);
+  const Frame* f = &now->frame;
+  double R_1 = now->drift.k_1 + w->m * (f->eta * a->omega_2_dot - f->rho * a->omega_3_dot);
+  double R_2 = now->drift.k_2 - w->m * (f->eta * a->omega_1_dot);
+  double R_3 = now->drift.k_3 + w->m * (f->rho * a->omega_1_dot);
+  double R_h = f->cos_theta * R_2 - f->sin_theta * R_3; /* horizontal, across e1 */
+  to_fixed(f, R_1, R_h, &lambda[0], &lambda[1]);
 }
 
 /* (friction, brake, omega_3) => law about the axle */
@@ -167,8 +167,8 @@ static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
 }
 
 /* Horizontal velocity of O: v_1 along e1 and Z_O omega_1 across it. */
-static inline void set_velocity(const WheelParameters* w, const Carrier* c, double* X, double* Y) {
-  to_fixed(c, c->v_1, -(w->r_0 * c->sin_theta + w->r) * c->omega_1, X, Y);
+static inline void set_velocity(const WheelParameters* w, const Frame* f, double* X, double* Y) {
+  to_fixed(f, f->v_1, -(w->r_0 * f->sin_theta + w->r) * f->omega_1, X, Y);
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
@@ -187,10 +187,10 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
-  Accelerations a = guided ? move_guided(scene, &now.carrier, &now.drift, law) : move(&now.system, law);
+  Accelerations a = guided ? move_guided(scene, &now.frame, &now.drift, law) : move(&now.system, law);
   double X_dot, Y_dot;
-  set_velocity(&scene->wheel, &now.carrier, &X_dot, &Y_dot);
-  set_rates(&now.carrier, &a, y_dot);
+  set_velocity(&scene->wheel, &now.frame, &X_dot, &Y_dot);
+  set_rates(&now.frame, &a, y_dot);
   put_pair(X_dot, Y_dot, y_dot + WHEEL_X_O);
   return a.N;
 }
@@ -205,27 +205,27 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
 }
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  Carrier c = carrier_of(wheel, y);
+  Frame f = frame_of(wheel, y);
   out->theta = y[WHEEL_THETA];
   out->psi = y[WHEEL_PSI];
   out->phi = y[WHEEL_PHI];
   out->X_O = y[WHEEL_X_O];
   out->Y_O = y[WHEEL_Y_O];
-  out->Z_O = wheel->r_0 * c.sin_theta + wheel->r;
-  out->theta_dot = c.omega_1;
-  out->psi_dot = c.psi_dot;
-  out->phi_dot = c.phi_dot;
-  out->omega_z = c.omega_3;
-  out->Z_O_dot = wheel->r_0 * c.cos_theta * c.omega_1;
-  set_velocity(wheel, &c, &out->X_O_dot, &out->Y_O_dot);
+  out->Z_O = wheel->r_0 * f.sin_theta + wheel->r;
+  out->theta_dot = f.omega_1;
+  out->psi_dot = f.psi_dot;
+  out->phi_dot = f.phi_dot;
+  out->omega_z = f.omega_3;
+  out->Z_O_dot = wheel->r_0 * f.cos_theta * f.omega_1;
+  set_velocity(wheel, &f, &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Instant now = instant_of(scene, y, scene->guided);
   AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]);
-  Accelerations a = scene->guided ? move_guided(scene, &now.carrier, &now.drift, law) : move(&now.system, law);
+  Accelerations a = scene->guided ? move_guided(scene, &now.frame, &now.drift, law) : move(&now.system, law);
   reaction_of(&scene->wheel, &now, &a, out->lambda);
-  set_dynamics(scene, &now.carrier, &a, out);
+  set_dynamics(scene, &now.frame, &a, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {

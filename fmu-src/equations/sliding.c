@@ -1,22 +1,22 @@
 /* The wheel that slides, reduced form: Newton and Euler about O for any principal moments of inertia; the ground's
- * horizontal force is mu_slide N against the slip, and only the height of O is a constraint. Carrier frame e1, e2, e3;
- * x along e1, y horizontal to the left of it. docs/equations.md derives every line. */
+ * horizontal force is mu_slide N against the slip, and only the height of O is a constraint. Non-spinning frame e1, e2,
+ * e3; x along e1, y horizontal to the left of it. docs/equations.md derives every line. */
 #include <string.h>
 
-#include "carrier.h"
+#include "frame.h"
 
 /* What acts apart from the ground's friction, or its change. */
 typedef struct Action {
   Moment M;        /* N m, external less gyroscopic moment */
-  double N_rest;   /* N, normal force for omega_1_dot = 0 */
+  double N_still;  /* N, normal force for omega_1_dot = 0 */
   double a_x, a_y; /* m/s2, rate of the slip without friction and omega_dot */
-  double turn[2];  /* rad/s2, omega_1_dot and omega_2_dot that a wheel carrier gives */
+  double guide[2]; /* rad/s2, omega_1_dot and omega_2_dot that a wheel carrier gives */
   double brake;    /* N m */
 } Action;
 
 /* One state under a load. */
 typedef struct Body {
-  Carrier carrier;
+  Frame frame;
   Inertia inertia;
   Action given;
   double h, l; /* m, height of O, r_0 sin(theta) + r, and its rate per unit of omega_1 */
@@ -35,23 +35,24 @@ typedef struct Motion {
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
 } Motion;
 
-/* (action, horizontal force f of the ground) => omega_dot, N, tau, rate of the slip; linear in both. Unless a wheel
- * carrier gives omega_1 and omega_2: [ I_11 + m l^2  p    ]                [ M_1 - l N_rest + h f_y ] [ p I_22 ]
- * {omega_dot} =  [ M_2 - eta f_x          ] J_z omega_3_dot = M_3 + rho f_x + tau,    N = N_rest + m l omega_1_dot */
+/* (action, horizontal force f of the ground) => omega_dot, N, tau, rate of the slip; linear in both:
+ * J_z omega_3_dot = M_3 + rho f_x + tau, N = N_still + m l omega_1_dot, and unless a wheel carrier gives these two
+ *   [ I_11 + m l^2  p    ]                [ M_1 - l N_still + h f_y ]
+ *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x           ] */
 static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
-  const Carrier* c = &b->carrier;
-  double p = b->inertia.p, M_2 = on->M.M_2 - c->eta * f_x, M_3 = on->M.M_3 + c->rho * f_x;
-  Accelerations a = {.omega_1_dot = on->turn[0], .omega_2_dot = on->turn[1]};
+  const Frame* f = &b->frame;
+  double p = b->inertia.p, M_2 = on->M.M_2 - f->eta * f_x, M_3 = on->M.M_3 + f->rho * f_x;
+  Accelerations a = {.omega_1_dot = on->guide[0], .omega_2_dot = on->guide[1]};
   if (!b->guided) {
-    a.omega_1_dot = (on->M.M_1 - b->l * on->N_rest + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
+    a.omega_1_dot = (on->M.M_1 - b->l * on->N_still + b->h * f_y - p * b->per_22 * M_2) * b->per_tilt;
     a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
   }
-  a.N = on->N_rest + w->m * b->l * a.omega_1_dot;
+  a.N = on->N_still + w->m * b->l * a.omega_1_dot;
   a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
   a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
   return (Motion){
       .a = a,
-      .u_x = on->a_x + f_x * b->per_mass - c->eta * a.omega_2_dot + c->rho * a.omega_3_dot,
+      .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,
       .u_y = on->a_y + f_y * b->per_mass + b->h * a.omega_1_dot,
   };
 }
@@ -60,29 +61,29 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
 INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   const WheelLoad* load = &scene->load;
-  Body b = {.carrier = carrier_of(w, y), .inertia = inertia_of(w, y[WHEEL_PHI])};
-  const Carrier* c = &b.carrier;
+  Body b = {.frame = frame_of(w, y), .inertia = inertia_of(w, y[WHEEL_PHI])};
+  const Frame* f = &b.frame;
   Action* a = &b.given;
-  double omega_1_2 = c->omega_1 * c->omega_1, p = b.inertia.p, F_x, F_y;
-  road_force(scene, c, &F_x, &F_y);
-  b.h = w->r_0 * c->sin_theta + w->r;
-  b.l = w->r_0 * c->cos_theta;
+  double omega_1_2 = f->omega_1 * f->omega_1, p = b.inertia.p, F_x, F_y;
+  road_force(scene, f, &F_x, &F_y);
+  b.h = w->r_0 * f->sin_theta + w->r;
+  b.l = w->r_0 * f->cos_theta;
   b.per_mass = 1 / w->m;
   b.per_spin = 1 / w->J_z;
   b.guided = guided;
   b.per_22 = 1 / b.inertia.I_22;
   b.per_tilt = 1 / (b.inertia.I_11 - p * p * b.per_22 + w->m * b.l * b.l);
   double lift = guided ? 0 : w->m * b.l * b.per_tilt;
-  b.g_x = lift * (c->eta * p * b.per_22);
+  b.g_x = lift * (f->eta * p * b.per_22);
   b.g_y = lift * b.h;
-  a->turn[0] = load->turn[1];
-  a->turn[1] = guided_rate(c, load->turn[0]);
-  a->M = moment_of(scene, &b.inertia, c);
-  a->N_rest = w->m * (w->g - w->r_0 * c->sin_theta * omega_1_2) - load->F[2];
-  a->a_x = F_x * b.per_mass + c->omega_1 * (w->r * c->sin_theta * c->omega_2 + c->eta * c->omega_3 - c->psi_dot * b.h);
-  a->a_y = F_y * b.per_mass + b.l * omega_1_2 - c->psi_dot * c->v_1;
+  a->guide[0] = load->guide[1];
+  a->guide[1] = guided_rate(f, load->guide[0]);
+  a->M = moment_of(scene, &b.inertia, f);
+  a->N_still = w->m * (w->g - w->r_0 * f->sin_theta * omega_1_2) - load->F[2];
+  a->a_x = F_x * b.per_mass + f->omega_1 * (w->r * f->sin_theta * f->omega_2 + f->eta * f->omega_3 - f->psi_dot * b.h);
+  a->a_y = F_y * b.per_mass + b.l * omega_1_2 - f->psi_dot * f->v_1;
   a->brake = load->brake;
-  b.kappa = kappa_of(&scene->friction, c->omega_3);
+  b.kappa = kappa_of(&scene->friction, f->omega_3);
   b.held = scene->friction.kind == WHEEL_HELD;
   b.N_free = motion_of(w, &b, a, 0, 0).a.N;
   /* The sign of N is that without sliding friction as long as there is room. */
@@ -176,20 +177,20 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 }
 
 /* The velocity of O: that of rolling, and the slip u. */
-static inline void set_velocity(const Carrier* c, double h, double u_x, double u_y, double* X_dot, double* Y_dot) {
-  to_fixed(c, c->v_1 + u_x, u_y - h * c->omega_1, X_dot, Y_dot);
+static inline void set_velocity(const Frame* f, double h, double u_x, double u_y, double* X_dot, double* Y_dot) {
+  to_fixed(f, f->v_1 + u_x, u_y - h * f->omega_1, X_dot, Y_dot);
 }
 
 /* Returns N, infinite where the wheel jams. */
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
   Sines chi = wheel_sines(y[WHEEL_CHI]); /* first: behind the call nothing is left in registers */
   Body b = body_of(scene, y, guided);
-  const Carrier* c = &b.carrier;
+  const Frame* f = &b.frame;
   double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
-  double chi_dot = y[WHEEL_SLIP] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[WHEEL_SLIP] - c->psi_dot;
-  set_velocity(c, b.h, y[WHEEL_SLIP] * d_x, y[WHEEL_SLIP] * d_y, &X_dot, &Y_dot);
-  set_rates(c, &m.a, y_dot);
+  double chi_dot = y[WHEEL_SLIP] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[WHEEL_SLIP] - f->psi_dot;
+  set_velocity(f, b.h, y[WHEEL_SLIP] * d_x, y[WHEEL_SLIP] * d_y, &X_dot, &Y_dot);
+  set_rates(f, &m.a, y_dot);
   put_pair(X_dot, Y_dot, y_dot + WHEEL_X_O);
   put_pair(m.u_x * d_x + m.u_y * d_y, chi_dot, y_dot + WHEEL_SLIP);
   return room_of(&b, d_x, d_y) > WHEEL_LEAST_ROOM ? m.a.N : INFINITY;
@@ -205,10 +206,10 @@ static double derivative(const WheelScene* scene, const double* y, double* y_dot
 }
 
 static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  Carrier c = carrier_of(wheel, y);
+  Frame f = frame_of(wheel, y);
   wheel_reduced.kinematics(wheel, y, out);
   Sines chi = wheel_sines(y[WHEEL_CHI]);
-  set_velocity(&c, out->Z_O, y[WHEEL_SLIP] * chi.cosine, y[WHEEL_SLIP] * chi.sine, &out->X_O_dot, &out->Y_O_dot);
+  set_velocity(&f, out->Z_O, y[WHEEL_SLIP] * chi.cosine, y[WHEEL_SLIP] * chi.sine, &out->X_O_dot, &out->Y_O_dot);
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
@@ -216,9 +217,9 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   Sines chi = wheel_sines(y[WHEEL_CHI]);
   double d_x = chi.cosine, d_y = chi.sine;
   Motion m = slide(&scene->wheel, &b, d_x, d_y);
-  to_fixed(&b.carrier, d_x, d_y, &out->lambda[0], &out->lambda[1]);
+  to_fixed(&b.frame, d_x, d_y, &out->lambda[0], &out->lambda[1]);
   for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;
-  set_dynamics(scene, &b.carrier, &m.a, out);
+  set_dynamics(scene, &b.frame, &m.a, out);
 }
 
 static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_SLIDING_STATES); }

@@ -4,14 +4,14 @@
  * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
- *   multibody  the paper's system (24); unknowns q and q_dot, constraints held at acceleration level; 12 states
+ *   multibody  the paper's system (24); unknowns q and q_dot, constraints in accelerations; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
- * Each takes a wheel on its carrier too, which keeps the direction of the axle (WheelScene.guided).
+ * Each takes a wheel on a wheel carrier too, which directs the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
- * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the carrier e1 (along
- * the line of nodes, the rolling direction), e2 (in the wheel plane, upwards), e3 (the axle) does not spin with
- * the wheel; body axes x, y, z = e3 do. Domain: 0 < theta < pi, masses, radii and moments positive. */
+ * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the non-spinning frame
+ * e1 (along the line of nodes, the rolling direction), e2 (in the wheel plane, upwards), e3 (the axle); body axes x, y,
+ * z = e3 spin with the wheel. Domain: 0 < theta < pi, masses, radii and moments positive. */
 #ifndef WHEEL_EQUATIONS_H
 #define WHEEL_EQUATIONS_H
 
@@ -21,7 +21,7 @@ extern "C" {
 
 enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
 
-/* Places in the state of `wheel_reduced`, angular velocity along the carrier axes; and in that of `wheel_sliding`
+/* Places in the state of `wheel_reduced`, angular velocity along e1, e2, e3; and in that of `wheel_sliding`
  * behind them the slip |u| and its direction chi. */
 enum { WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3, WHEEL_PSI, WHEEL_PHI, WHEEL_X_O, WHEEL_Y_O };
 enum { WHEEL_SLIP = WHEEL_REDUCED_STATES, WHEEL_CHI };
@@ -43,10 +43,10 @@ void wheel_set_slope(WheelParameters* wheel, double g, double slope, double dire
 
 /* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */
 typedef struct WheelLoad {
-  double F[3];    /* N at O, fixed axes X, Y, Z */
-  double M[3];    /* N m on the wheel, carrier axes e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
-  double brake;   /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
-  double turn[2]; /* rad/s2, psi_ddot and theta_ddot, which the wheel carrier gives a guided wheel */
+  double F[3];     /* N at O, fixed axes X, Y, Z */
+  double M[3];     /* N m on the wheel along e1, e2, e3: M[2]: about the axle, whichever way the wheel turns */
+  double brake;    /* N m, >= 0: largest moment of a dry brake about the axle, which acts against omega_z */
+  double guide[2]; /* rad/s2, psi_ddot and theta_ddot, which the wheel carrier gives a guided wheel */
 } WheelLoad;
 
 /* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
@@ -88,8 +88,8 @@ typedef struct WheelScene {
   WheelGround ground;
   WheelContactMode contact;
   double mu_slide; /* >= 0, coefficient of sliding friction: the ground's horizontal force is mu_slide N */
-  /* Not 0: on a wheel carrier psi_dot and theta_dot are given: their rates are `load.turn`, whatever acts: the limit of
-   * infinite moments of inertia across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
+  /* Not 0: on a wheel carrier psi_dot and theta_dot are given: their rates are `load.guide`, whatever acts: the limit
+   * of infinite moments of inertia across the axle, with any J_x and J_y. `wheel_guide_moment` is the carrier's. */
   int guided;
 } WheelScene;
 
@@ -126,9 +126,9 @@ typedef struct WheelDynamics {
   double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
 
-/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its own
- * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
- * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
+/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its
+ * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u|
+ * is. So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
 typedef struct WheelSlip {
   double N;            /* N, normal force */
   double room;         /* 1 without sliding friction; where it falls to zero, the wheel jams: no N >= 0 exists */
@@ -167,7 +167,7 @@ typedef struct WheelFormulation {
  * enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
 
-/* y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z: the reduced equations in the paper's own variables, the
+/* y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z: the reduced equations in the paper's variables, the
  * state of model exchange. */
 extern const WheelFormulation wheel_euler;
 
@@ -186,9 +186,9 @@ extern const WheelFormulation wheel_multibody_sliding;
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
 
-/* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling > 0).
- * Of several that nearest, to two degrees, to the direction against the force that rolling would need. NaN where there
- * is none: the ground does not press, or the wheel jams. */
+/* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling >
+ * 0). Of several that nearest, to two degrees, to the direction against the force that rolling would need. NaN where
+ * there is none: the ground does not press, or the wheel jams. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */
@@ -233,7 +233,7 @@ void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, 
 
 /* The motion of a guided wheel after a jump of the carrier's rates to psi_dot and theta_dot, rad/s: the limit of ever
  * steeper ramps of both. phi_dot and a slip change with them. */
-void wheel_turn(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion);
+void wheel_jump(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion);
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);

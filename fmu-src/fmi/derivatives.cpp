@@ -29,8 +29,8 @@ bool is_known(const Instance& i, fmi2ValueReference v) {
 
 template <class Fits>
 bool check_all(const Instance& i, const fmi2ValueReference v[], std::size_t n, Fits fits, const char* what) {
-  return std::all_of(v, v + n, [&](fmi2ValueReference own) {
-    return i.check(fits(own), "%s: value reference %u is not %s.", own, what);
+  return std::all_of(v, v + n, [&](fmi2ValueReference reference) {
+    return i.check(fits(reference), "%s: value reference %u is not %s.", reference, what);
   });
 }
 
@@ -45,7 +45,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
       if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]) ||
-          (values[k] != 0 && rests(i.wheel, v[k])))
+          (values[k] != 0 && is_idle(i.wheel, v[k])))
         return i.log(Topic::error,
                      "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, of a carrier's rate "
                      "only where it turns: guided, by co-simulation.",

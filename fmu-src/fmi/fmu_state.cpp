@@ -1,4 +1,4 @@
-// FMI 2.0 functions: rollback. An FMU state is its own serialization: portable bytes that hold no pointers.
+// FMI 2.0 functions: rollback. An FMU state is its serialization: portable bytes that hold no pointers.
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace legality = fmi::legality;
 namespace {
 
 struct Snapshot : fmi::Handle {
-  static constexpr std::uint64_t own_mark = 0x535f554d46484557;  // "WEHFMU_S"
+  static constexpr std::uint64_t kind_mark = 0x535f554d46484557;  // "WEHFMU_S"
 
   std::size_t size;  // of the bytes behind this header
   unsigned char* bytes() { return reinterpret_cast<unsigned char*>(this + 1); }
@@ -27,7 +27,7 @@ Snapshot* allocate(fmi2FMUstate* state, std::size_t size) {
   void* const memory = std::malloc(sizeof(Snapshot) + size);
   if (!memory) return nullptr;
   if (old) fmi::release(old);
-  auto* const snapshot = ::new (memory) Snapshot{{.mark = Snapshot::own_mark}, size};
+  auto* const snapshot = ::new (memory) Snapshot{{.mark = Snapshot::kind_mark}, size};
   *state = static_cast<fmi::Handle*>(snapshot);
   return snapshot;
 }

@@ -45,7 +45,7 @@ const char* name_of_state(Phase phase) {
 }  // namespace
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : Handle{.mark = own_mark}, wheel(*this, kind), callbacks_(callbacks ? *callbacks : fmi2CallbackFunctions{}) {}
+    : Handle{.mark = kind_mark}, wheel(*this, kind), callbacks_(callbacks ? *callbacks : fmi2CallbackFunctions{}) {}
 
 void Instance::take(Topic topic, const char* message) const {
   char escaped[2 * longest];

@@ -25,7 +25,7 @@ template <class Handled>
 Handled* handle_of(void* passed) {
   auto* const handle = static_cast<Handle*>(passed);
   if (!handle || std::bit_cast<std::uintptr_t>(handle) % alignof(Handle) != 0) return nullptr;
-  return handle->mark == Handled::own_mark ? static_cast<Handled*>(handle) : nullptr;
+  return handle->mark == Handled::kind_mark ? static_cast<Handled*>(handle) : nullptr;
 }
 
 template <class Handled>
@@ -50,7 +50,7 @@ constexpr Category category_of(wheel::Topic topic) {
 }
 
 struct Instance final : Handle, wheel::Reporter {
-  static constexpr std::uint64_t own_mark = 0x495f554d46484557;  // "WEHFMU_I"
+  static constexpr std::uint64_t kind_mark = 0x495f554d46484557;  // "WEHFMU_I"
 
   // One block of memory, the name included. What takes memory later: docs/decisions/package.md. Null if there is none.
   static Instance* create(const char* name, const fmi2CallbackFunctions* callbacks, bool logging, wheel::Kind kind);
@@ -96,7 +96,7 @@ struct Instance final : Handle, wheel::Reporter {
 
 inline constexpr const char* no_fault = nullptr;
 
-// Every call on an instance: one of this library, not from within its own logger, legal in its state. An illegal call
+// Every call on an instance: one of this library, not from within its logger, legal in its state. An illegal call
 // changes nothing. The body returns a status, or what is wrong; one without a result cannot fail.
 template <class Body>
 fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {

@@ -132,7 +132,7 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
   read(T2_ + since, image);
   problem.derivative(problem.owner, T2_ - since, y, rate);
   for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
-  set_place(rate, -half_of(T2_ + since).turn * std::conj(place_of(rate)));
+  set_place(rate, -half_of(T2_ + since).rotation * std::conj(place_of(rate)));
   return maps(problem, T2_ - since, y, T2_ + since, image, rate);
 }
 

@@ -7,23 +7,21 @@
 
 namespace orbit {
 
-bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_turn) {
+bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_angle) {
   latest_half_ = {};
   start_.psi_sum = y0[WHEEL_PSI];
   start_.phi_sum = y0[WHEEL_PHI];
   start_.place = place_of(y0);
-  start_.turn = std::polar(1.0, y0[WHEEL_PSI]);
+  start_.rotation = std::polar(1.0, y0[WHEEL_PSI]);
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
   const double t = 0.6 * T2_;
   double integrated[states], rate[states], y[states];
   read_integrated(t, integrated);
   read(t, y);
   problem.derivative(problem.owner, t, integrated, rate);
-  set_place(rate, start_.turn * place_of(rate));
-  const double turn = std::fabs(at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI]),
-               roll = std::fabs(at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI]);
+  set_place(rate, start_.rotation * place_of(rate));
   if (!maps(problem, t, integrated, t, y, rate)) return false;
-  until_ = ends() ? T2_ : most_turn / (std::fmax(turn, roll) / (T2_ - T1_));
+  until_ = ends() ? T2_ : most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
   return true;
 }
 
@@ -32,11 +30,13 @@ void Orbit::take_half() {
   latest_half_ = {};
   read_integrated(T1_, at_T1_);
   read_integrated(T2_, at_T2_);
-  delta_ = std::remainder(at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI], std::numbers::pi);
+  psi_growth_ = at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI];
+  phi_growth_ = at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI];
+  delta_ = std::remainder(psi_growth_, std::numbers::pi);
   displacement_ = (place_of(at_T2_) - place_of(at_T1_)) * std::polar(1.0, -at_T1_[WHEEL_PSI]);
   pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
-  turn_at_T1_ = std::polar(1.0, at_T1_[WHEEL_PSI]);
-  mirror_turn_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
+  rotation_at_T1_ = std::polar(1.0, at_T1_[WHEEL_PSI]);
+  mirror_rotation_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
 }
 
 // The k halves before it are the integrated one and its mirror image in turn. A pair of them turns the path by 2 delta;
@@ -46,17 +46,16 @@ Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.begin = begin_of(k);
   half.next = begin_of(k + 1);
-  const double n = std::floor(0.5 * k), turn = at_T2_[WHEEL_PSI] - at_T1_[WHEEL_PSI],
-               roll = at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI];
+  const double n = std::floor(0.5 * k);
   half.mirrored = k != 2 * n;
-  const Complex turned = std::polar(1.0, n * delta_), pairs_turn = turned * turned;
-  const double quotient = delta_ == 0 ? n : turned.imag() / std::sin(delta_);
-  Complex way = pair_ * quotient * turned;
-  if (half.mirrored) way += displacement_ * pairs_turn;
-  half.place = start_.place + start_.turn * (place_of(at_T1_) + way * turn_at_T1_);
-  half.turn = start_.turn * (half.mirrored ? -pairs_turn * mirror_turn_ : pairs_turn);
-  half.psi_sum = start_.psi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PSI] + (k - 1) * turn : k * turn);
-  half.phi_sum = start_.phi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PHI] + (k - 1) * roll : k * roll);
+  const Complex chord = std::polar(1.0, n * delta_), pairs_rotation = chord * chord;
+  const double quotient = delta_ == 0 ? n : chord.imag() / std::sin(delta_);
+  Complex way = pair_ * quotient * chord;
+  if (half.mirrored) way += displacement_ * pairs_rotation;
+  half.place = start_.place + start_.rotation * (place_of(at_T1_) + way * rotation_at_T1_);
+  half.rotation = start_.rotation * (half.mirrored ? -pairs_rotation * mirror_rotation_ : pairs_rotation);
+  half.psi_sum = start_.psi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PSI] + (k - 1) * psi_growth_ : k * psi_growth_);
+  half.phi_sum = start_.phi_sum + (half.mirrored ? 2 * at_T2_[WHEEL_PHI] + (k - 1) * phi_growth_ : k * phi_growth_);
   return half;
 }
 
@@ -69,10 +68,10 @@ const Orbit::Half& Orbit::half_of(double t) const {
 }
 
 // y from the frame of the integrated half to the fixed axes; way: from the start of the half to O.
-void Orbit::turn_by(const Half& half, Complex way, double* y) {
+void Orbit::to_fixed(const Half& half, Complex way, double* y) {
   y[WHEEL_PSI] += half.psi_sum;
   y[WHEEL_PHI] += half.phi_sum;
-  set_place(y, half.place + half.turn * way);
+  set_place(y, half.place + half.rotation * way);
 }
 
 // psi, phi and the displacement of O are proportional to the time, along a chord that turns half as fast as the wheel.
@@ -93,7 +92,7 @@ void Orbit::read_integrated(double t, double* y) const {
 void Orbit::read(double t, double* y) const {
   if (result_ != Result::unfolded || t <= T2_) {
     read_integrated(t, y);
-    return turn_by(start_, place_of(y), y);
+    return to_fixed(start_, place_of(y), y);
   }
   const Half& half = half_of(t);
   const double since = std::clamp(t - half.begin, 0.0, T2_ - T1_);
@@ -105,7 +104,7 @@ void Orbit::read(double t, double* y) const {
     y[WHEEL_PSI] = -y[WHEEL_PSI];
     y[WHEEL_PHI] = -y[WHEEL_PHI];
   }
-  turn_by(half, way, y);
+  to_fixed(half, way, y);
 }
 
 }  // namespace orbit

@@ -46,8 +46,8 @@ class Orbit {
   // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
   Result build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
   // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0. False where the right-hand side
-  // depends on them. It can be read until it ends, or psi or phi has turned by `most_turn`, rad.
-  bool enter(const solver::Problem& problem, const double* y0, double most_turn);
+  // depends on them. It can be read until it ends, or psi or phi has turned by `most_angle`, rad.
+  bool enter(const solver::Problem& problem, const double* y0, double most_angle);
   void leave() { until_ = nowhere; }
 
   // The state (out, 8 entries) at 0 <= t <= until().
@@ -81,7 +81,7 @@ class Orbit {
     double begin = 0, next = 0;
     bool mirrored = false;
     double psi_sum = 0, phi_sum = 0;
-    Complex place = 0, turn = 1;
+    Complex place = 0, rotation = 1;
   };
 
   // building.cpp
@@ -98,7 +98,7 @@ class Orbit {
   void take_half();
   void read_circle(double t, double* y) const;
   void read_integrated(double t, double* y) const;
-  static void turn_by(const Half& half, Complex way, double* y);
+  static void to_fixed(const Half& half, Complex way, double* y);
 
   double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
   Half half_at(double k) const;
@@ -112,11 +112,12 @@ class Orbit {
   solver::Counters counters_ = {};
   double T1_ = 0, T2_ = 0;  // T2: where the motion ends, if it does
   double at_T1_[states] = {}, at_T2_[states] = {};
-  double steady_rate_[states] = {};   // at the start
-  double delta_ = 0;                  // psi(T2) - psi(T1) less the nearest multiple of pi
-  double pair_ = 0;                   // factor of the sum over pairs of halves
-  Complex turn_at_T1_, mirror_turn_;  // exp(i psi(T1)), exp(2 i psi(T2))
-  Complex displacement_;              // from O(T1) to O(T2), seen along psi(T1)
+  double steady_rate_[states] = {};           // at the start
+  double psi_growth_ = 0, phi_growth_ = 0;    // rad, from T1 to T2
+  double delta_ = 0;                          // that of psi less the nearest multiple of pi
+  double pair_ = 0;                           // factor of the sum over pairs of halves
+  Complex rotation_at_T1_, mirror_rotation_;  // exp(i psi(T1)), exp(2 i psi(T2))
+  Complex displacement_;                      // from O(T1) to O(T2), seen along psi(T1)
 
   double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
 

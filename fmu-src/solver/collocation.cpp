@@ -117,7 +117,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     const double margin = problem.derivative(problem.owner, t, y.data(), f.row(j).data());
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
-    step->lowest_margin = j == 0 ? margin : std::fmin(step->lowest_margin, margin);
+    step->least_margin = j == 0 ? margin : std::fmin(step->least_margin, margin);
     if (problem.settling) speeds[j] = y[problem.settling->speed];
   }
   if (problem.steep) {
@@ -140,7 +140,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
 }
 
 // First rates: those of the last step's polynomial, which goes on, or the rates at the start. Where a speed changes by
-// its own size within the step, the turning at its start is most often rounding over the speed: zero is nearer.
+// its size within the step, the turning at its start is most often rounding over the speed: zero is nearer.
 bool Collocation::predict(const Problem& problem, const Step& last, Counters* counters, Step* step) {
   if (last.degree != radau_points) {
     ++counters->rhs;

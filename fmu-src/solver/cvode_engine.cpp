@@ -19,7 +19,7 @@ struct CvodeObjects {
   struct Call {
     const Problem* problem;
     Counters* counters;
-    double lowest_margin;
+    double least_margin;
   } call;
   int states;
   SUNContext context;
@@ -52,7 +52,7 @@ int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
   auto& call = *static_cast<CvodeObjects::Call*>(user);
   ++call.counters->rhs;
   const double margin = call.problem->derivative(call.problem->owner, t, data(y), data(y_dot));
-  if (margin < call.lowest_margin) call.lowest_margin = margin;
+  if (margin < call.least_margin) call.least_margin = margin;
   return std::isnan(margin) ? 1 : 0;
 }
 
@@ -62,7 +62,7 @@ int weights(N_Vector y, N_Vector w, void* user) {
   return 0;
 }
 
-// In words of our own: SUNDIALS's messages give times of the solver's clock.
+// SUNDIALS's messages give times of the solver's clock.
 const char* reason_of(int flag) {
   if (flag == CV_FIRST_RHSFUNC_ERR) return "the rates of the states are not finite";
   for (const int at_smallest : {CV_ERR_FAILURE, CV_CONV_FAILURE, CV_REPTD_RHSFUNC_ERR})
@@ -151,7 +151,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   if (next_ == Next::starts_after_stop) ++counters->restarts;
   const bool first = next_ != Next::goes_on || steps_ == most_steps;
   int flag = first ? start_at(*step) : CV_SUCCESS;
-  const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's own count starts anew with its first step
+  const long jacobians = first ? 0 : jacobians_of(o);  // CVODE's count starts anew with its first step
   if (flag >= 0) flag = make_step(stop, &step->end);
   counters->jacobians += std::max(0L, jacobians_of(o) - jacobians);
   failure_ = reason_of(flag);
@@ -159,7 +159,7 @@ bool Cvode::advance(const Problem& problem, double stop, Counters* counters, Ste
   if (flag < 0) return false;
   ++steps_;
   std::copy_n(data(o.y), problem.states, step->y_end);
-  step->lowest_margin = o.call.lowest_margin;
+  step->least_margin = o.call.least_margin;
   return true;
 }
 

@@ -16,13 +16,14 @@ enum class Method : int { adams, bdf, runge_kutta, collocation };
 // or nothing of it changes.
 enum class Consequence : int { ends, bends, goes_on };
 
-// A function whose first fall below zero is an event: the solver finds its instant and stops there.
+// A function whose value, its margin, falls below zero at an event: the solver finds the first such instant and stops
+// there.
 struct Watched {
   int event;  // the owner's number of it, 0 to max_watched
   double (*value)(void* owner, int event, double t, const double* y);
-  // Whether the margins that `derivative` returns count this function in. It is then looked at only in steps in which
-  // a margin came near zero, else at each step. It must be scaled as they are.
-  bool by_margin;
+  // Whether its margin comes with the rates, in the least one that `derivative` returns: then it is looked at only in
+  // steps in which that came near zero, else at each step. Quick margins must be scaled alike.
+  bool quick;
   int state = -1;  // the only one that `value` reads; below zero: it reads all
 };
 
@@ -47,11 +48,11 @@ struct Steep {
 struct Problem {
   int states;  // 8 or 12: the length of loops, known at compile time
   void* owner;
-  // y_dot = f(t, y). Returns the margin, the least value of the functions watched by it at (t, y), infinite if there is
-  // none; NaN where the rates are not finite: the solver then tries a smaller step.
+  // (t, y) => y_dot = f(t, y); returns the least of the quick margins, infinite if there is none; NaN where the rates
+  // are not finite: the solver then tries a smaller step.
   double (*derivative)(void* owner, double t, const double* y, double* y_dot);
-  // weights[i] = 1 / (largest error of y_i), > 0, for a step whose error may be `share` times the tolerance of the
-  // solution. A step is accepted where the root mean square of weight times local error is below one.
+  // (share, y) => weights[i] = 1 / (largest error of y_i), > 0, for a step whose error may be `share` times the
+  // tolerance of the solution. A step is accepted where the root mean square of weight times local error is below one.
   void (*weights)(void* owner, double share, const double* y, double* weights);
   // Of two events at the same instant the later one in the list counts.
   Watched watched[max_watched];
@@ -60,7 +61,7 @@ struct Problem {
   // the watched functions have a simple shape. Returns their number, at most max_extremes; null where inputs are
   // constant.
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
-  double near;          // margins below this are near zero
+  double near;          // quick margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
   std::optional<Settling> settling;  // for collocation alone
   std::optional<Steep> steep;        // the same
@@ -72,7 +73,7 @@ struct Problem {
 };
 
 // Of all steps since the first start. `rhs` counts the evaluations of f, those for difference quotients included but
-// not those of a dense output, and of the functions that are watched by the margin; `roots` those of the others.
+// not those of a dense output, and of the quick functions that are watched; `roots` those of the others.
 struct Counters {
   long long steps, rhs, jacobians, roots, restarts;
 

@@ -57,11 +57,11 @@ struct RungeKutta::Work {
   // Inlined, it would keep the loops before it from being vectorised.
   [[gnu::noinline]] double norm(const double* x) const { return weighted_norm<width>(x, weights); }
 
-  // f at t and y as stage i; returns the margin, NaN where the rates are not finite.
+  // f at t and y as stage i; returns the least margin, NaN where the rates are not finite.
   double evaluate(int i, double t, const double* y) {
     ++counters->rhs;
     const double margin = problem.derivative(problem.owner, t, y, engine.f_[i]);
-    if (margin < step.lowest_margin) step.lowest_margin = margin;
+    if (margin < step.least_margin) step.least_margin = margin;
     return margin;
   }
 
@@ -88,8 +88,8 @@ struct RungeKutta::Work {
 
   // The rate at the end of the step, with which the next one begins.
   bool evaluate_end() {
-    engine.margin_ = evaluate(12, step.end, step.y_end);
-    return !std::isnan(engine.margin_);
+    engine.end_margin_ = evaluate(12, step.end, step.y_end);
+    return !std::isnan(engine.end_margin_);
   }
 
   // Both estimates together, as DOP853 weighs them.
@@ -138,8 +138,8 @@ struct RungeKutta::Work {
     if (engine.has_end_)
       std::copy_n(engine.f_[12], width, engine.f_[0]);
     else
-      engine.margin_ = evaluate(0, step.start, step.y_start);
-    if (std::isnan(engine.margin_)) return "the rates of the states are not finite";
+      engine.end_margin_ = evaluate(0, step.start, step.y_start);
+    if (std::isnan(engine.end_margin_)) return "the rates of the states are not finite";
     problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
     double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
@@ -161,7 +161,7 @@ struct RungeKutta::Work {
       const bool waits = stops || h == limit;  // most often the problem changes where this step ends
       if (!stops && h <= rounding_at(t)) break;
       step.end = stops ? stop : t + h;
-      step.lowest_margin = engine.margin_;
+      step.least_margin = engine.end_margin_;
       double error = try_size();
       if (error <= 1 && !waits && !evaluate_end()) error = INFINITY;
       if (!(error <= 1)) {
@@ -186,10 +186,10 @@ struct RungeKutta::Work {
   // Here it is sorted by the powers of s = x - 1.
   void expand() {
     double p_3[width], p_4[width], p_5[width], p_6[width];
-    const double lowest_margin = step.lowest_margin;  // may not depend on what is read
+    const double least_margin = step.least_margin;  // may not depend on what is read
     const bool finite = (engine.has_end_ || !std::isnan(evaluate(12, step.end, step.y_end))) && stage<13>(at) &&
                         stage<14>(at) && stage<15>(at);
-    step.lowest_margin = lowest_margin;
+    step.least_margin = least_margin;
     combine<dormand_prince::d, 0>(p_3);
     combine<dormand_prince::d, 1>(p_4);
     combine<dormand_prince::d, 2>(p_5);
@@ -241,7 +241,7 @@ void RungeKutta::visit(support::Archive& archive, const Problem& problem, const 
   archive.range(limit_, 0, archive.greatest);
   archive.range(size_, 0, archive.greatest);
   archive.range(last_error_, 0, 1);
-  archive.number(margin_);
+  archive.number(end_margin_);
   archive.count(has_end_, 0, 1);
   const int known = step.end == step.start ? 0 : has_end_ ? 13 : 12;  // stages; the others follow
   for (int k = 0; k < known; ++k) archive.numbers(f_[k], problem.states);

@@ -34,7 +34,7 @@ class RungeKutta final : public Engine {
   double limit_ = 0;                           // of the first step after the last start, s; 0: none
   double size_ = 0;                            // of the last step, s
   double last_error_ = 0;                      // of the last step, in units of the weights; 0: there was none
-  double margin_ = 0;                          // at the end of the last step
+  double end_margin_ = 0;                      // least margin at the end of the last step
   bool has_end_ = false;                       // stage 12, at the end of the last step, is known
   alignas(16) double f_[16][max_states] = {};  // rates at the stages of the last step
 };

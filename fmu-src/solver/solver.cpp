@@ -51,7 +51,7 @@ void Solver::resume() {
   read(known_until_, y);
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    if (watched.by_margin) continue;
+    if (watched.quick) continue;
     ++counters_.roots;
     values_[i] = watched.value(problem_.owner, watched.event, known_until_, y);
   }
@@ -100,9 +100,9 @@ void Solver::look_for_events(double from) {
   const std::span<const double> extremes(instants, static_cast<std::size_t>(count));
   for (int i = 0; i < problem_.watched_count; ++i) {
     const Watched& watched = problem_.watched[i];
-    const Search search = {problem_, step_, watched, extremes, watched.by_margin ? &counters_.rhs : &counters_.roots};
+    const Search search = {problem_, step_, watched, extremes, watched.quick ? &counters_.rhs : &counters_.roots};
     Sample lo = {from, values_[i]}, hi = {};
-    if (watched.by_margin) {
+    if (watched.quick) {
       if (!comes_near(search)) continue;
       expand();
       lo = search.sample(from);
@@ -121,10 +121,10 @@ void Solver::look_for_events(double from) {
   }
 }
 
-// Whether a function watched by the margin may fall. Where an input has an extreme inside the step, the function is
-// evaluated there too, because none of the step's own evaluations may have come near it.
+// Whether a quick function may fall. Where an input has an extreme inside the step, the function is
+// evaluated there too, because none of the step's evaluations may have come near it.
 bool Solver::comes_near(const Search& search) {
-  if (step_.lowest_margin < problem_.near) return true;
+  if (step_.least_margin < problem_.near) return true;
   if (!search.extremes.empty()) expand();
   const auto is_near = [&](double t) { return t < known_until_ && search.sample(t).g < problem_.near; };
   return std::any_of(search.extremes.begin(), search.extremes.end(), is_near);

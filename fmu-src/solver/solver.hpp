@@ -1,8 +1,8 @@
 // One initial-value problem y' = f(t, y) and its solution step by step: dense output, events, endings, snapshots.
 //
 // Engines behind one interface (step.hpp): CVODE's Adams and BDF, DOP853, and collocation.
-// Independent of wheel and FMI. Time is the owner's own clock (s). Steps never see the times at which results are read,
-// so the communication grid cannot change a bit of the solution; only a stop time of the owner cuts a step short.
+// Independent of wheel and FMI. Time is that of the owner's clock, s. Steps never see the times at which results are
+// read, so the communication grid cannot change a bit of the solution; only a stop time of the owner cuts a step short.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ enum class Outcome { stepped, event, failed };
 class Solver {
  public:
   Solver() = default;
-  Solver(const Solver&) = delete;  // it points to its own engines
+  Solver(const Solver&) = delete;  // it points to its engines
   Solver& operator=(const Solver&) = delete;
 
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later

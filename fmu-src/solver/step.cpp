@@ -6,7 +6,7 @@
 namespace solver {
 void Step::set_point(double t, const double* y, int states) {
   start = end = t;
-  lowest_margin = never;
+  least_margin = never;
   inside_at = 0;
   degree = 0;
   std::copy_n(y, states, y_start);
@@ -19,7 +19,7 @@ void Step::visit(support::Archive& archive, int states) {
   archive.range(end, start, archive.greatest);
   archive.numbers(y_start, states);
   archive.numbers(y_end, states);
-  archive.range(lowest_margin, -archive.greatest, never);
+  archive.range(least_margin, -archive.greatest, never);
   archive.range(inside_at, 0, 1);
   archive.numbers(y_inside, states);
 }

@@ -51,7 +51,7 @@ void evaluate(const double (*c)[row], int degree, double s, double* y, int first
 struct Step {
   double start, end;  // s
   alignas(16) double y_start[max_states], y_end[max_states];
-  double lowest_margin;  // of the evaluations in the step
+  double least_margin;  // of the quick ones, at the evaluations in the step
   // An approximation of y at start + inside_at (end - start), known without further work; 0 where there is
   // none.
   double inside_at;

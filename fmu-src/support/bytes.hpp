@@ -1,6 +1,6 @@
 // Numbers to bytes and back: how snapshots are written, read and measured.
 //
-// Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's own integers are; little endian, as
+// Every number takes 8 bytes, a double or a 64-bit integer, whatever the platform's integers are; little endian, as
 // all platforms of this FMU are. Bytes to be read may come from anywhere: reading never leaves them, and each number
 // stays within its bounds.
 #pragma once

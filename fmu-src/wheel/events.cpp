@@ -22,7 +22,7 @@ double way_to_layer(const Setup& setup, const InForce& now, double t, const doub
   return (now.in_layer() ? inside : outside) / setup.rate_scale;
 }
 
-// How far the mode of friction is from its end: rolling, omega_z over the wheel's own rate; held, what holding leaves
+// How far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, what holding leaves
 // unused. In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
@@ -31,7 +31,7 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 }
 
 [[gnu::noinline]] double left_while_held(const Setup& setup, const InForce& now, double t, const double* y) {
-  return held_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
+  return hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
 }
 
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
@@ -64,7 +64,7 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
     const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
     const double fall = std::fmin(rates.y_dot[slip], 0), turning = y[slip] * rates.y_dot[slip + 1];
     const double rate = std::sqrt(fall * fall + turning * turning);
-    least *= std::fmax(1, rate * setup.own_time * setup.own_time / setup.length);
+    least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
   }
   return (y[slip] - least) / setup.slip_scale;
 }
@@ -165,7 +165,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
     constexpr const EventRow& row = event_rows[i];
     if constexpr (row.quick_value != nullptr) {
       if (!row.can_occur(setup, now)) return;
-      if (const double own = signed_margin(row, now, row.quick_value(setup, y, N)); own < least) least = own;
+      if (const double margin = signed_margin(row, now, row.quick_value(setup, y, N)); margin < least) least = margin;
     }
   };
   // By index, so that the compiler inlines the values: a plain loop costs 2 % of a motion's instructions.

@@ -16,7 +16,7 @@ namespace {
 // would be wrong by as much.
 constexpr double distance = 1e-12;
 
-// An event that lies ahead by less than this, in units of the wheel's own time, has happened: some solvers stop a
+// An event that lies ahead by less than this, in units of the time scale, has happened: some solvers stop a
 // little before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
@@ -48,7 +48,7 @@ double indicator(const EventRow& row, const Setup& setup, const Run& run) {
 // Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred.
 bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
   if (!row.exchanged || !row.can_occur(setup, run.in_force)) return false;
-  return margin_at(row, setup, run) <= 0 || margin_at(row, setup, run, soon * setup.own_time) <= 0;
+  return margin_at(row, setup, run) <= 0 || margin_at(row, setup, run, soon * setup.time_scale) <= 0;
 }
 
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else

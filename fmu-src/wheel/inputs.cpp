@@ -39,25 +39,25 @@ bool continues(const double* c, double tau, double rounding, const double* next)
   return true;
 }
 
-[[gnu::noinline]] void add_turn(const double (*guide)[max_order + 1], double tau, WheelLoad& load) {
-  for (int i = 0; i < 2; ++i) load.turn[i] = rate_at(guide[i], tau);
+[[gnu::noinline]] void add_guide(const double (*guide)[max_order + 1], double tau, WheelLoad& load) {
+  for (int i = 0; i < 2; ++i) load.guide[i] = rate_at(guide[i], tau);
 }
 
 }  // namespace
 
-bool is_turning(const Polynomials& inputs) { return acts(inputs[guide_input], 0) || acts(inputs[guide_input + 1], 0); }
+bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input], 0) || acts(inputs[guide_input + 1], 0); }
 
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
   if (input < brake_input) return &load.M[input - 3];
-  return input == brake_input ? &load.brake : &load.turn[input - guide_input];
+  return input == brake_input ? &load.brake : &load.guide[input - guide_input];
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-void set_load(const Polynomials& inputs, bool turning, double tau, WheelLoad& load) {
+void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load) {
   for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
-  load.turn[0] = load.turn[1] = 0;
-  if (turning) add_turn(inputs + guide_input, tau, load);
+  load.guide[0] = load.guide[1] = 0;
+  if (guides) add_guide(inputs + guide_input, tau, load);
   if (!(load.brake > 0)) load.brake = 0;
 }
 
@@ -74,7 +74,7 @@ void Inputs::take_over(double t, const Polynomials& asked, bool guided) {
   count = guided ? inputs_count : guide_input;
   std::memcpy(c, asked, sizeof c);
   loaded = varies = false;
-  turning = guided && is_turning(c);
+  guides = guided && is_guiding(c);
   for (const auto& polynomial : c) {
     loaded |= acts(polynomial, 0);
     varies |= acts(polynomial, 1);

@@ -2,7 +2,7 @@
 // weight, the brake, and how the wheel carrier of a guided wheel turns.
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along the carrier axes e1, e2, e3; M_brake [N m],
-// the capacity of the dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `turn`. What the
+// the capacity of the dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `guide`. What the
 // caller asks for is in force from the next step on.
 #pragma once
 
@@ -18,29 +18,29 @@ inline constexpr double factorial[] = {1, 1, 2, 6};
 using Polynomials = double[inputs_count][max_order + 1];
 
 // Whether a rate of the carrier or one of its derivatives is not zero.
-bool is_turning(const Polynomials& inputs);
+bool is_guiding(const Polynomials& inputs);
 
-// The load (out) at tau, s, from the origin, and its rate there: a brake at zero can only be put on. `turning`: the
+// The load (out) at tau, s, from the origin, and its rate there: a brake at zero can only be put on. `guides`: the
 // carrier's inputs act.
-void set_load(const Polynomials& inputs, bool turning, double tau, WheelLoad& load);
+void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load);
 WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
 
 // The inputs in force.
 struct Inputs {
-  double origin = 0;  // s, own clock
+  double origin = 0;  // s, clock of the run
   Polynomials c = {};
   int count = guide_input;  // so many can act: all where a wheel carrier can turn the wheel
   // What follows from the polynomials.
-  bool loaded = false;   // some input is not zero
-  bool braked = false;   // the brake is in use: its capacity or one of its derivatives is not zero
-  bool varies = false;   // some input depends on time
-  bool turning = false;  // the carrier's rates or one of their derivatives are not zero
+  bool loaded = false;  // some input is not zero
+  bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
+  bool varies = false;  // some input depends on time
+  bool guides = false;  // the carrier's rates or one of their derivatives are not zero
 
   void take_over(double t, const Polynomials& asked, bool guided);
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
-  void set_load_at(double t, WheelLoad& load) const { set_load(c, turning, t - origin, load); }
+  void set_load_at(double t, WheelLoad& load) const { set_load(c, guides, t - origin, load); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;
   // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.

@@ -15,7 +15,7 @@ WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.
 WheelFriction regularized(const Setup& setup) { return {WHEEL_REGULARIZED, 0, setup.omega_s}; }
 
 // Rolling against the moment that would hold the wheel.
-WheelFriction released_from(const Held& hold) { return rolling(!(hold.tau > 0)); }
+WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
 // (scene, y) => the law, apart from layers.
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
@@ -23,7 +23,7 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   if (setup.friction_law == regularized_law) return regularized(setup);
   const double omega_z = y[setup.formulation->spin_index];
   if (omega_z != 0) return rolling(omega_z > 0);
-  const Held hold = held_at(setup, scene, y);
+  const Hold hold = hold_at(setup, scene, y);
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
@@ -43,7 +43,7 @@ WheelSlip free_slip(const Setup& setup, WheelScene scene, const double* y) {
 
 // Whether a law of a wheel without spin agrees with the motion that it gives.
 bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
-  if (scene.friction.kind == WHEEL_HELD) return held_at(setup, scene, y).reserve >= 0;
+  if (scene.friction.kind == WHEEL_HELD) return hold_at(setup, scene, y).reserve >= 0;
   return scene.friction.sigma * dynamics_of(setup, scene, y).omega_z_dot >= 0;
 }
 
@@ -51,30 +51,30 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   apply_loads(setup, road_asked(demand), t, demand.inputs, now);
-  if (setup.turns()) turn_carrier(setup, demand, now.scene, false, y);
+  if (setup.steered()) set_guide_rates(setup, demand, now.scene, false, y);
   now.layered = false;
   decide_contact(setup, t, y, now);
 }
 
 void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
   now.road = road;
-  now.scene.wheel = setup.wheel;
+  now.scene.wheel = setup.scene.wheel;
   now.scene.wheel.s = road.s;
-  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.wheel.g, road.slope, road.slope_direction);
+  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.scene.wheel.g, road.slope, road.slope_direction);
   now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
   now.scene.ground = now.pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
-  now.scene.guided = setup.guided;
-  now.inputs.take_over(t, inputs, setup.turns());
-  set_load(inputs, now.inputs.turning, 0, now.scene.load);
+  now.scene.guided = setup.scene.guided;
+  now.inputs.take_over(t, inputs, setup.steered());
+  set_load(inputs, now.inputs.guides, 0, now.scene.load);
 }
 
-void turn_carrier(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
+void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
   const WheelFormulation& f = formulation_of(setup, scene);
   const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
   const double* const across = y + f.spin_index - 2;  // the rates across the axle
   if (psi_dot == 0 && theta_dot == 0 && across[0] == 0 && across[1] == 0) return;
   WheelKinematics k;
-  f.kinematics(&setup.wheel, y, &k);
+  f.kinematics(&setup.scene.wheel, y, &k);
   const double u = f.slip_index < 0 ? 0 : y[f.slip_index], chi = f.slip_index < 0 ? 0 : y[f.slip_index + 1];
   WheelMotion motion = {k.psi,
                         k.theta,
@@ -86,8 +86,8 @@ void turn_carrier(const Setup& setup, const Demand& demand, const WheelScene& sc
                         k.Y_O,
                         u * std::cos(chi),
                         u * std::sin(chi)};
-  if (!starts) wheel_turn(&scene, psi_dot, theta_dot, &motion);
-  set_out(f, setup.wheel, motion, y);
+  if (!starts) wheel_jump(&scene, psi_dot, theta_dot, &motion);
+  set_out(f, setup.scene.wheel, motion, y);
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
@@ -105,7 +105,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
   WheelScene scene = now.scene_at(t);
-  scene.friction = released ? released_from(held_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
+  scene.friction = released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
   now.scene.friction = scene.friction;
   const bool stiff = can_stiffen(setup, now) && (now.slides() || softness_of(setup, scene, y) < 0);
   if (stiff || now.layered) enter_layer(setup, y, now);
@@ -141,7 +141,7 @@ double first_direction(const Setup& setup, const WheelScene& scene, const double
 
 double least_slip(const Setup& setup, double t) {
   constexpr double part = 0.01, roundings = 128;
-  return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.own_time);
+  return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.time_scale);
 }
 
 // Rounding is relative to mu_max N, and that of a tangential force of zero.
@@ -155,7 +155,7 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
-Held held_at(const Setup& setup, WheelScene scene, const double* y) {
+Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
   constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
   scene.friction = held;
   const WheelDynamics dynamics = dynamics_of(setup, scene, y);
@@ -182,11 +182,11 @@ double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
   return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia);
 }
 
-// To be compared with the wheel's own time scale; below the limit DOP853 alone is faster through the layer
+// To be compared with the time scale; below the limit DOP853 alone is faster through the layer
 // (docs/results/stability.md).
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
   constexpr double stiff = 500;
-  return 1 - decay_of(setup, scene, y) * setup.own_time / stiff;
+  return 1 - decay_of(setup, scene, y) * setup.time_scale / stiff;
 }
 
 }  // namespace wheel

@@ -15,7 +15,7 @@ void apply_loads(const Setup& setup, const Road& road, double t, const Polynomia
 
 // From here on the wheel carrier turns at the rates asked for: with a jump, or, at the start, as if it had always
 // turned so. Writes y.
-void turn_carrier(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
+void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
 
 // Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel rolls where it can,
 // and begins to slide where it cannot. Writes the slip in y.
@@ -48,10 +48,10 @@ inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.ki
 
 // A wheel that is held: the moment about the axle, N m, and s N + M_brake - |tau|, N m, which is left; where rounding
 // alone decides, the wheel stays held.
-struct Held {
+struct Hold {
   double tau, reserve;
 };
-Held held_at(const Setup& setup, WheelScene scene, const double* y);
+Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.

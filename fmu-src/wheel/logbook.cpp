@@ -65,7 +65,7 @@ void look_at_grip(Wheel& wheel, double t) {
   const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
   const double mu = wheel_required_friction(dynamics.lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
-  wheel.run.grip_due = exceeds ? solver::never : t + setup.own_time / looks;
+  wheel.run.grip_due = exceeds ? solver::never : t + setup.time_scale / looks;
   if (exceeds)
     wheel.reporter.log(Topic::warning,
                        "t = %s s: mu_required = %s, more than a dry road gives; mu_max = 0 sets no limit.",

@@ -8,14 +8,14 @@ namespace wheel {
 // The run stands at an event that does not end it: what follows is in force, counted and logged. Writes run.in_force,
 // run.y and the counts.
 solver::Consequence pass_event(Wheel& wheel, Event event);
-// An observed event at t, s, own clock: the first of a run is logged.
+// An observed event at t, s, clock of the run: the first of a run is logged.
 void observe(Wheel& wheel, Event event, double t);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
 // spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
 void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
 // Once per run, where a loaded wheel on a road without a limit is found to need a friction coefficient above 1, at t at
-// the latest, s, own clock. Looks a few times in the wheel's own time, so that it costs nothing noticeable. Writes
-// run.grip_due.
+// the latest, s, clock of the run. Looks a few times in the wheel's time scale, so that it costs nothing noticeable.
+// Writes run.grip_due.
 void look_at_grip(Wheel& wheel, double t);
 // Where a road that was set, with the scene and y of a reading, makes the wheel jam: the reading has no force that
 // satisfies the equations, and the next step ends the run.

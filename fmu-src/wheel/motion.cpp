@@ -1,5 +1,5 @@
 // How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
-// stages. Times in s on the own clock.
+// stages. Times in s on the clock of the run.
 //
 //   stage           writes, besides the solution
 //   apply_demand    run: in_force, y (a slip, a jump of the carrier's rates), phase (an orbit is left), last_change,

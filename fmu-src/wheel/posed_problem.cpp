@@ -34,12 +34,12 @@ template <int states>
 // The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a
 // tenth is left over many steps. Where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel: their
 // rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip, which follows them at once.
-double rounding_of_rates(double theta, double turns, bool slides) {
-  const double cancels = slides ? turns * turns : turns;
+double rounding_of_rates(double theta, double heading, bool slides) {
+  const double cancels = slides ? heading * heading : heading;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
 }
 
-// (share, y) => weights. The states' own rounding is a floor: no step has to be more exact than the numbers can
+// (share, y) => weights. The states' rounding is a floor: no step has to be more exact than the numbers can
 // express. The regularized law turns errors of omega_z into moments over its width omega_s: the spin must be accurate
 // to a fraction of that width.
 template <int states>
@@ -50,8 +50,8 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const bool multibody = setup.formulation == &wheel_multibody;
   const double theta = y[setup.formulation->tilt_index];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance, turns = multibody ? std::fabs(y[psi_dot]) * setup.own_time : 0;
-  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, turns, now.slides()));
+  const double slow = share * setup.tolerance, heading = multibody ? std::fabs(y[psi_dot]) * setup.time_scale : 0;
+  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
@@ -88,11 +88,11 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const Rates backward = rates_of(setup, scene, y);
   const WheelFormulation& formulation = formulation_of(setup, scene);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
-  const double own = change(setup.formulation->spin_index);
-  for (int i = 0; i < formulation.states; ++i) others[i] = own == 0 ? 0 : change(i) / own;
+  const double spin_change = change(setup.formulation->spin_index);
+  for (int i = 0; i < formulation.states; ++i) others[i] = spin_change == 0 ? 0 : change(i) / spin_change;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
-    *slopes++ = own * (1 - part * part) / setup.omega_s;
+    *slopes++ = spin_change * (1 - part * part) / setup.omega_s;
   }
 }
 

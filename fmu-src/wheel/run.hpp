@@ -93,10 +93,10 @@ struct Run {
   Phase phase = Phase::created;
   Event ended_by = Event::none;
   InForce in_force;
-  double t = 0;            // s, own clock: the instant reached
-  double y_time = 0;       // s, own clock: the instant of y
-  double last_change = 0;  // s, own clock: when an input or a tunable parameter last changed
-  double grip_due = 0;     // s, own clock: from when on mu_required is looked at; infinite after its warning
+  double t = 0;            // s, clock of the run: the instant reached
+  double y_time = 0;       // s, clock of the run: the instant of y
+  double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
+  double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   double y[WHEEL_MAX_STATES] = {};
   bool observed[event_count] = {};  // has occurred, and was logged
   long long transitions = 0;        // of the friction, rolling and sliding

@@ -17,36 +17,37 @@ double power_of_two_below(double x) {
                    std::numeric_limits<double>::min());
 }
 
-// The wheel's own time is sqrt(length / g); without a weight that matters it is the time of a turn at the initial rate.
+// The time scale is sqrt(length / g); without a weight that matters it is the inverse of the initial rate.
 // The slope changes no scale: it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
-  const double gravity = setup.wheel.g, length = setup.wheel.r_0 + setup.wheel.r;
+  const WheelParameters& wheel = setup.scene.wheel;
+  const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
   const bool matters = gravity > 1e-30 * length * rate * rate;
   setup.length = length;
-  setup.own_time = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
-  setup.longest_step = 0.6 * setup.own_time;
-  setup.weight = setup.wheel.m * length / (setup.own_time * setup.own_time);
-  setup.rate_scale = power_of_two_below(1 / setup.own_time);
+  setup.time_scale = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
+  setup.longest_step = 0.6 * setup.time_scale;
+  setup.weight = wheel.m * length / (setup.time_scale * setup.time_scale);
+  setup.rate_scale = power_of_two_below(1 / setup.time_scale);
   setup.moment_scale = power_of_two_below(setup.weight * length);
   const double omega_2 = start.psi_dot * std::sin(start.theta);
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
 }
 
-// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the wheel's own time scale or the
+// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the
 // initial tilting, whichever is larger.
 void set_error_scales(Setup& setup) {
   const WheelFormulation* const f = setup.formulation;
-  const double length = setup.length, slowest = 1 / setup.own_time;
-  const double turn = std::max(slowest, setup.tilting);
+  const double length = setup.length, slowest = 1 / setup.time_scale;
+  const double rate = std::max(slowest, setup.tilting);
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
-  const double reduced[] = {1, turn, turn, turn, 3, 3, 3 * length, 3 * length};
+  const double reduced[] = {1, rate, rate, rate, 3, 3, 3 * length, 3 * length};
   // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
   const double speed = 0.15 * slowest * length;
   setup.slip_scale = speed;
-  const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, turn, turn, turn};
-  const double euler[] = {3 * length, 3 * length, 3, 1, 3, turn, turn, turn};
+  const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, rate, rate, rate};
+  const double euler[] = {3 * length, 3 * length, 3, 1, 3, rate, rate, rate};
   std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
   const bool by_paper = f->states == WHEEL_MULTIBODY_STATES;
   std::copy_n(by_paper ? multibody : setup.exchanged ? euler : reduced, f->states, setup.slow_scales);
@@ -105,7 +106,7 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
           "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
   require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
           mu_slide);
-  sound &= reporter.check(!is_turning(demand.inputs) || (v[guided] != 0 && !exchanged),
+  sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchanged),
                           "psi_dot_guide, theta_dot_guide = %s, %s rad/s: only the carrier of a guided wheel turns, by "
                           "co-simulation; else they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
@@ -130,31 +131,31 @@ Setup setup_of(const Demand& demand) {
   const double* v = demand.parameters;
   Setup setup = {};
   setup.exchanged = demand.kind == Kind::model_exchange;
-  setup.guided = v[guided] != 0;
+  setup.scene.guided = v[guided] != 0;
   choose_equations(setup, demand);
   // clang-format off
-  setup.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
+  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};
   // clang-format on
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds = (v[J_x] == v[J_y] || setup.guided) && choice_of(v[formulation]) == automatic_formulation &&
+  setup.unfolds = (v[J_x] == v[J_y] || setup.scene.guided) && choice_of(v[formulation]) == automatic_formulation &&
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
-  const auto origin = [&](double start, double own) { return Origin{start, setup.exchanged ? start : own}; };
+  const auto origin = [&](double start, double state) { return Origin{start, setup.exchanged ? start : state}; };
   setup.psi = origin(v[psi_start], wheel_less_turns(v[psi_start]));
   setup.phi = origin(v[phi_start], wheel_less_turns(v[phi_start]));
   setup.X_O = origin(v[X_O_start], 0);
   setup.Y_O = origin(v[Y_O_start], 0);
-  const WheelMotion motion = {setup.psi.own,    v[theta_start], setup.phi.own, v[psi_dot_start], v[theta_dot_start],
-                              v[phi_dot_start], setup.X_O.own,  setup.Y_O.own, v[slip_x_start],  v[slip_y_start]};
+  const WheelMotion motion = {setup.psi.state,  v[theta_start],  setup.phi.state, v[psi_dot_start], v[theta_dot_start],
+                              v[phi_dot_start], setup.X_O.state, setup.Y_O.state, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
-  setup.starts_sliding = setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0);
-  const WheelFormulation& formulation = setup.starts_sliding ? *setup.sliding : *setup.formulation;
-  set_out(formulation, setup.wheel, motion, setup.start);
-  formulation.kinematics(&setup.wheel, setup.start, &start);
+  if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.scene.contact = WHEEL_SLIDES;
+  const WheelFormulation& formulation = formulation_of(setup, setup.scene);
+  set_out(formulation, setup.scene.wheel, motion, setup.start);
+  formulation.kinematics(&setup.scene.wheel, setup.start, &start);
   set_scales(setup, start);
   set_error_scales(setup);
   return setup;
@@ -163,18 +164,18 @@ Setup setup_of(const Demand& demand) {
 void scales_at(const Setup& setup, double omega_z, double* out) {
   const WheelFormulation& f = *setup.formulation;
   std::copy_n(setup.slow_scales, setup.sliding ? WHEEL_MAX_STATES : f.states, out);
-  const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
-  if (!(spin > own_rate)) return;
-  const double turn = own_rate * own_rate / spin + setup.tilting;  // rad/s, of a nutation
-  out[f.tilt_index] = std::fmin(out[f.tilt_index], turn / spin);
+  const double spin = std::fabs(omega_z), slowest = 1 / setup.time_scale;
+  if (!(spin > slowest)) return;
+  const double nutation = slowest * slowest / spin + setup.tilting;  // rad/s
+  out[f.tilt_index] = std::fmin(out[f.tilt_index], nutation / spin);
   const int last = f.spin_index;  // the three rates of rotation stand together, the spin last
-  for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], turn);
+  for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], nutation);
 }
 
 double share_at(const Setup& setup, double omega_z) {
   constexpr double many = 12;
-  const double spin = std::fabs(omega_z), own_rate = 1 / setup.own_time;
-  return spin > many * own_rate ? many * own_rate / spin : 1;
+  const double spin = std::fabs(omega_z), slowest = 1 / setup.time_scale;
+  return spin > many * slowest ? many * slowest / spin : 1;
 }
 
 }  // namespace wheel

@@ -37,7 +37,7 @@ struct Demand {
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
   double value(unsigned v, int k = 0) const { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
 
-  explicit Demand(Kind own = Kind::co_simulation) : kind(own) {
+  explicit Demand(Kind asked = Kind::co_simulation) : kind(asked) {
     for (unsigned v = 0; v < first_input; ++v) parameters[v] = row_of(v).start;
   }
 };
@@ -45,27 +45,27 @@ struct Demand {
 // What the state counts: an angle from its start less whole turns, a place from its start. So a wheel that starts far
 // away, or after many turns, loses no digits. In model exchange the state is the whole.
 struct Origin {
-  double start, own;  // where the whole and the state begin
-  double whole(double state) const { return start == own ? state : start + (state - own); }
+  double start, state;  // where the whole and the state begin
+  double whole(double now) const { return start == state ? now : start + (now - state); }
 };
 
 struct Setup {
   bool exchanged;                       // model exchange: another solver moves the states
   const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
-  WheelParameters wheel;                // on a level road and with s = 0: the road in force is part of the run
+  // The start: on a level road with s = 0, without loads and law, which are part of the run; a slip or none; guided or
+  // not.
+  WheelScene scene;
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool guided;   // a wheel carrier gives psi and theta
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
   double tolerance;                // relative, of the whole solution
-  bool starts_sliding;             // with a slip
   double start[WHEEL_MAX_STATES];  // the initial state
   Origin psi, phi, X_O, Y_O;
   double tilting;                        // rad/s, initial rate of turning about e1 and e2
-  double own_time;                       // s, the wheel's own time scale
+  double time_scale;                     // s, of the wheel's motion
   double longest_step;                   // s
   double length;                         // m, r_0 + r
   double weight;                         // N, or the force that the time scale stands for without a weight
@@ -73,7 +73,7 @@ struct Setup {
   double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
 
-  bool turns() const { return guided && !exchanged; }  // the carrier, at the rates that are inputs
+  bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
 };
 
 Setup setup_of(const Demand& demand);
@@ -106,7 +106,7 @@ inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, co
 void scales_at(const Setup& setup, double omega_z, double* out);
 
 // Errors add up over the turns of a fast wheel. Returns the fraction of the usual error that a step may make at the
-// spin omega_z, rad/s: below one where the wheel turns very often within its own time scale.
+// spin omega_z, rad/s: below one where the wheel turns very often within the time scale.
 double share_at(const Setup& setup, double omega_z);
 
 // Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.

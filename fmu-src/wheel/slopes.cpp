@@ -60,22 +60,22 @@ struct Pass {
   bool take(const Stencil& stencil, double x, double h, const Reading& now, const MoveTo& move_to) {
     if (!move_to(x)) return false;
     centre = sample(now);
-    Numbers own = {}, bend = {};
+    Numbers quotient = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
       if (!move_to(x + stencil.places[k] * h)) return false;
       const Numbers at = sample(now);
       for (std::size_t i = 0; i < count; ++i) {
-        own[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
+        quotient[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
         bend[i] += stencil.bend[k] * (at[i] - centre[i]) / h;
       }
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const double size = std::fabs(own[i]);
+      const double size = std::fabs(quotient[i]);
       const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
       // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
       if (likely >= error[i]) continue;
-      slope[i] = own[i];
+      slope[i] = quotient[i];
       error[i] = likely;
     }
     return true;
@@ -176,8 +176,8 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const int state = setup.exchanged ? state_index_of(known) : -1;
   double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
   const double size = size_of(setup, now.scene.friction, state, place);
-  const bool slid = has_begun(w.run.phase) ? w.run.in_force.slides() : setup.starts_sliding;
-  const bool begins = now.scene.contact == WHEEL_SLIDES && !slid;
+  const WheelScene& before = has_begun(w.run.phase) ? w.run.in_force.scene : setup.scene;
+  const bool begins = now.scene.contact == WHEEL_SLIDES && before.contact == WHEEL_GRIPS;
   const auto move_to = [&](double x) {
     place = x;
     if (begins) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
@@ -193,12 +193,12 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
   double swing = 0;
   for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) swing += std::fabs(y_dot[rate]);
   const double tilting = (std::fabs(y[WHEEL_OMEGA_1]) + std::fabs(y[WHEEL_OMEGA_2])) / std::sin(y[WHEEL_THETA]);
-  const double turning = slides ? std::fabs(y_dot[WHEEL_CHI]) : 0;
-  return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + turning;
+  const double chi_dot = slides ? std::fabs(y_dot[WHEEL_CHI]) : 0;
+  return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + chi_dot;
 }
 
 // In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
-// its own rate can be large, and acts as a moment about the axle.
+// its rate can be large, and acts as a moment about the axle.
 void take_along_motion(Wheel& w, Pass& pass) {
   const Reading whole(w);
   Setup setup = w.setup;
@@ -213,7 +213,7 @@ void take_along_motion(Wheel& w, Pass& pass) {
   const WheelFormulation& formulation = formulation_of(setup, start.scene);
   const Rates rates = rates_of(setup, start.scene, start.y);
   const Inputs& inputs = w.run.in_force.inputs;
-  const bool goes_on = setup.turns() && w.demand.news != News::set;  // as the reading
+  const bool goes_on = setup.steered() && w.demand.news != News::set;  // as the reading
   WheelLoad rate = goes_on ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
@@ -265,7 +265,7 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   const bool guides = known >= first_input + guide_input && known < stored_count;
-  if (guides && !w.setup.turns()) return true;
+  if (guides && !w.setup.steered()) return true;
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
   if (!(parameter || guides ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;

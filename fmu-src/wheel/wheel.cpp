@@ -53,8 +53,8 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
   std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
-  run.in_force.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
-  if (w.setup.turns()) turn_carrier(w.setup, w.demand, run.in_force.scene, true, run.y);
+  run.in_force.scene = w.setup.scene;
+  if (w.setup.steered()) set_guide_rates(w.setup, w.demand, run.in_force.scene, true, run.y);
   apply(w.setup, w.demand, 0, run.y, run.in_force);
   w.demand.news = News::none;
   Reading start(w);
@@ -72,7 +72,7 @@ Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solv
   std::copy_n(state_now(w), WHEEL_MAX_STATES, y);
   // where nothing was set, without a copy of all that is in force; and a carrier still turns as in the last step
   const News news = w.demand.news;
-  const bool goes_on = news == News::none || (news == News::stays && setup->turns());
+  const bool goes_on = news == News::none || (news == News::stays && setup->steered());
   scene = goes_on ? w.run.in_force.scene_at(w.run.t) : in_force_now(w, y).scene;
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
@@ -116,7 +116,7 @@ bool start(Wheel& w) {
   const bool exchanged = w.demand.kind == Kind::model_exchange;
   const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
   InForce before;
-  before.scene.contact = w.setup.starts_sliding ? WHEEL_SLIDES : WHEEL_GRIPS;
+  before.scene = w.setup.scene;
   if (sound) log_changes(w, before);
   w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
   return sound;

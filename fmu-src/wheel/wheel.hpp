@@ -1,6 +1,6 @@
 // One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
 // as far as it is known; and its run from the parameters to the end. Each function that changes a wheel names in its
-// header what it writes. The run has its own clock, zero at the start, so that a start time of 1e9 s costs no digits.
+// header what it writes. The run has a clock, zero at the start, so that a start time of 1e9 s costs no digits.
 #pragma once
 
 #include <cstddef>
@@ -39,9 +39,9 @@ struct Wheel {
 };
 
 // Whether a variable is a rate of a carrier that does not turn.
-inline bool rests(const Wheel& wheel, unsigned variable) {
+inline bool is_idle(const Wheel& wheel, unsigned variable) {
   const bool guides = variable >= variable::psi_dot_guide && variable < stored_count;
-  return guides && is_running(wheel.run.phase) && !wheel.setup.turns();
+  return guides && is_running(wheel.run.phase) && !wheel.setup.steered();
 }
 
 // The state at the instant reached; writes run.y.

@@ -25,7 +25,7 @@ def guided(seed: int, law: int, rows: int = 3000) -> tuple[Table, Table]:
     motions["psi_dot"][still] = motions["theta_dot"][still] = 0
     if law == eq.HELD:
         motions["phi_dot"] = -motions["psi_dot"] * np.cos(motions["theta"])
-    scenes["load"]["turn"] = np.where(still[:, None], 0, random.normal(0, 5, (rows, 2)))
+    scenes["load"]["guide"] = np.where(still[:, None], 0, random.normal(0, 5, (rows, 2)))
     scenes["mu_slide"], scenes["contact"] = random.uniform(0, 1.2, rows), 1
     scenes["guided"] = 1
     for axis in ("slip_x", "slip_y"):
@@ -37,9 +37,9 @@ def transcribed(scenes: Table, motions: Table, slides: bool) -> tuple[Table, Tab
     """WheelDynamics, and the carrier's moments about e1 and e2."""
     q = papers_state(eq.start_each(eq.MULTIBODY, scenes, motions))
     paper = Carried(scenes["wheel"], q)
-    paper.turn = scenes["load"]["turn"]
+    paper.turn = scenes["load"]["guide"]
     if slides:
-        theta, theta_dot, theta_ddot = motions["theta"], motions["theta_dot"], scenes["load"]["turn"][:, 1]
+        theta, theta_dot, theta_ddot = motions["theta"], motions["theta_dot"], scenes["load"]["guide"][:, 1]
         rise = scenes["wheel"]["r_0"] * (np.cos(theta) * theta_ddot - np.sin(theta) * theta_dot**2)
         N = scenes["wheel"]["m"] * (scenes["wheel"]["g"] + rise) - scenes["load"]["F"][:, 2]
         mu = np.where(N > 0, scenes["mu_slide"], 0)
