@@ -1,7 +1,6 @@
-"""The wheel slides where grip ends, and grips again: closed forms, balances, the independent reference.
+"""The wheel slides where grip ends, and grips again: balances, the independent reference, cost, endings, ice.
 
-Coulomb's law: grip up to mu_max N, then mu_slide N against the slip. Upright and straight: R = r_0 + r, v of O along
-e1, slip_x = v + R omega_z. SI.
+Coulomb's law: grip up to mu_max N, then mu_slide N against the slip; R = r_0 + r. Straight: test_straight.py. SI.
 """
 
 from math import cos, degrees, hypot, pi, radians, sin
@@ -20,7 +19,7 @@ from wheelfmu.truth.reference import Start, Wheel
 from wheelfmu.truth.reference.judge import carrier_axes, momenta
 from wheelfmu.truth.scenes import THETA_0, Scene
 from wheelfmu.truth.schedule import Schedule
-from wheelfmu.truth.sliding import HUB, LOCK, ROAD, SLIDES, UPRIGHT, random_slide
+from wheelfmu.truth.sliding import HUB, ROAD, SLIDES, UPRIGHT, random_slide
 
 PAPER = Wheel()
 R = PAPER.r_0 + PAPER.r
@@ -37,100 +36,7 @@ def straight(library: Library, times, inputs: Schedule | None = None, **start: f
     return library.simulate(times, 1e-11, inputs, **{**UPRIGHT, **ROAD, **start})
 
 
-# ---- closed forms, upright and straight ----
-
-
-def test_a_locked_wheel_stops_after_v_squared_over_2_mu_g_and_stays(library: Library) -> None:
-    t, way = sliding.stopping(PAPER, 0.4, 7.0)
-    times = [0.0, t / 2, t - 1e-7, t + 1e-7, t + 1]
-    run = straight(library, times, LOCK, slip_x_start=7.0)
-    assert run["contact_mode"].tolist() == [1, 1, 1, 0, 0]
-    assert not run["omega_z"].any() and not run["slip_x"][3:].any()
-    tipping = np.abs(run["psi"] * run["Y_O_dot"])[3:].max()  # by the rounding of 90 deg; the wheel turns a little
-    within(absolute_error(run["X_O_dot"][3:], 0), 2 * tipping + EPSILON**2, "velocity after the stop, m/s")
-    within(absolute_error(run["X_O"][[1, 4]], [0.75 * way, way]), 1e-11, "way, m")
-    force = 0.4 * PAPER.m * PAPER.g
-    within(absolute_error(run["lambda_x"][:2], -force), 64 * force * EPSILON, "force of the road, N")
-    within(absolute_error(run["tau"][:2], R * force), 32 * R * force * EPSILON, "moment of the brake, N m")
-    free = straight(library, times, slip_x_start=7.0)
-    beyond(free["X_O"][-1] / way, 1.1, "way of the wheel that is not locked, relative")
-
-
-@pytest.mark.parametrize("mu", [0.3, 0.05])
-def test_a_wheel_thrown_with_backspin_slides_grips_and_comes_back(library: Library, mu: float) -> None:
-    t, v, way = sliding.backspin(PAPER, mu, 2.0, 10.0)
-
-    def error(judged: float) -> float:
-        throw = {"phi_dot_start": 10.0, "slip_x_start": 2 + R * 10.0, "mu_max": judged, "mu_slide": judged}
-        run = straight(library, [0.0, t - 1e-7, t + 1e-7, t + 1], **throw)
-        assert run["X_O_dot"][0] == pytest.approx(2.0, abs=1e-14)
-        if judged == mu:
-            assert run["contact_mode"].tolist() == [1, 1, 0, 0]
-        after = [run["X_O_dot"][-1] - v, run["omega_z"][-1] + v / R, run["X_O"][-1] - way - v]
-        return absolute_error(after, 0.0)
-
-    assert v < 0
-    within(error(mu), 1e-10, "velocity, m/s, spin, rad/s, and place, m")
-    beyond(error(mu * 1.001), 1e-5, "those with a coefficient 0.1 % larger")
-
-
-@pytest.mark.parametrize("excess", [1.0001, 1.5])
-def test_a_motor_spins_the_wheel_only_beyond_the_torque_that_the_road_can_hold(library: Library, excess: float) -> None:
-    limit = sliding.gripping_torque(PAPER, 0.45)
-    a, spin = sliding.spinning(PAPER, 0.4, excess * limit)
-
-    def drive(torque: float) -> Run:
-        return straight(library, [0.0, 0.5, 1.0], Schedule(((0.0, {"M_3": -torque}),)))
-
-    run = drive(excess * limit)
-    assert run["contact_mode"].tolist() == [1, 1, 1]
-    found = run["X_O_dot"][1:], run["omega_z"][1:], run["slip_x"][1:]
-    within(absolute_error(np.array(found).T, np.outer([0.5, 1], [a, spin, a + R * spin])), 3e-11, "speeds, SI")
-    rolls = drive(limit / 1.0001)
-    assert not rolls["contact_mode"].any() and not rolls["slip_x"].any()
-    beyond(abs(rolls["omega_z"][-1] - spin), 0.3, "spin below the limit, rad/s")
-
-
-def test_a_motor_on_a_ramp_spins_the_wheel_from_the_closed_forms_instant_on(library: Library) -> None:
-    rate = 100.0  # N m/s
-    t = sliding.gripping_torque(PAPER, 0.45) / rate
-    ramp = Schedule(((0.0, {"M_3": (0.0, -rate)}),))
-
-    def modes(shift: float, **road: float) -> list[float]:
-        return straight(library, [0.0, t - 1e-7 + shift, t + 1e-7 + shift], ramp, **road)["contact_mode"].tolist()
-
-    assert modes(0.0) == [GRIPS, GRIPS, SLIDING]
-    assert modes(0.0, mu_max=0.4501) == [GRIPS, GRIPS, GRIPS]
-    assert modes(1e-4) == [GRIPS, SLIDING, SLIDING]
-
-
-@pytest.mark.parametrize("share", [0.9999, 1.0001])
-@pytest.mark.parametrize("mu_slide", [0.2, 0.15])
-def test_on_a_slope_the_wheel_rolls_up_to_its_limit_and_slides_above(library, share: float, mu_slide: float) -> None:
-    slope, slides = share * sliding.gripping_slope(PAPER, 0.2), share > 1
-    road = {"mu_max": 0.2, "mu_slide": mu_slide, "slope": slope, "slope_direction": pi}  # downhill is +X
-    run = straight(library, [0.0, 1.0], **road)
-    assert run["contact_mode"].tolist() == [int(slides)] * 2
-
-    def error(judged: bool) -> float:
-        a, spin = sliding.downhill(PAPER, mu_slide, slope, judged)
-        return max(abs(run["X_O_dot"][-1] - a), abs(run["omega_z"][-1] + spin))
-
-    within(error(slides), 1e-11, "velocity, m/s, and spin after 1 s, rad/s")
-    if mu_slide < 0.2:
-        beyond(error(not slides), 0.3, "velocity and spin off the other closed form")
-
-
-def test_a_locked_wheel_stays_on_a_slope_up_to_mu_max_and_slides_down_above(library: Library) -> None:
-    def on(slope: float) -> Run:
-        return straight(library, [0.0, 1.0], LOCK, slope=slope, slope_direction=pi)
-
-    above, below = on(np.arctan(0.4501)), on(np.arctan(0.4499))
-    assert below["contact_mode"].tolist() == [GRIPS] * 2
-    within(abs(below["X_O"][-1]), EPSILON**2, "way of the wheel that grips, m")  # cos(90 deg) twice
-    a = PAPER.g * (sin(np.arctan(0.4501)) - 0.4 * cos(np.arctan(0.4501)))
-    assert above["contact_mode"].tolist() == [SLIDING] * 2
-    within(abs(above["slip_x"][-1] - a), 3e-12, "slip after 1 s, m/s")
+# ---- a steady circle ----
 
 
 def test_a_steady_circle_slides_outwards_where_the_road_gives_less_than_psi_dot_v_over_g(library: Library) -> None:

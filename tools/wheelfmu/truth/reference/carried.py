@@ -70,7 +70,7 @@ class Margin:
 
 @dataclass
 class Carried:
-    """One wheel. `mu_slide` 0: it never slides."""
+    """One wheel. `mu_slide` 0: it never slides. `omega_s`: width of a regularized law; 0: the exact one."""
 
     wheel: Wheel
     psi: float = 0.0
@@ -81,6 +81,7 @@ class Carried:
     mu_slide: float = 0.0
     slip: tuple[float, float] = (0.0, 0.0)  # m/s, at the start: along e1, and to the left
     road: tuple[float, float] = (0.0, 0.0)  # rad: slope, and the direction uphill
+    omega_s: float = 0.0
     rtol: float = 1e-12
     transitions: list[tuple[float, str]] = field(default_factory=list)
 
@@ -148,14 +149,19 @@ class Carried:
             d = u[:2] / np.linalg.norm(u[:2])
             K[8:10], right[8:10] = 0, 0
             K[8:10, 6:8], K[8:10, 8] = np.eye(2), self.mu_slide * d
-        if sign == 0 and (self.wheel.s or brake):  # held: w' along the axle is zero
+        if sign == 0 and self.rubs(piece):  # held: w' along the axle is zero
             K[11, 3:6] = a
         else:
-            K[11, 11], K[11, 8], right[11] = 1, self.wheel.s * sign, -brake * sign
+            kappa = np.tanh(a @ w / self.omega_s) if self.omega_s else sign
+            K[11, 11], K[11, 8], right[11] = 1, self.wheel.s * kappa, -brake * kappa
         x = np.linalg.solve(K, right)
         slip = y[VELOCITY] + np.cross(w, c)
         power = F @ y[VELOCITY] + M @ w + (E[:, :2] @ x[9:11]) @ w + x[11] * (a @ w) + x[6:9] @ slip
         return Now(x[0:3], x[3:6], x[6:9], x[9:11], float(x[11]), brake, float(power), a, c)
+
+    def rubs(self, piece: Piece) -> bool:
+        """The exact law holds it, or not."""
+        return not self.omega_s and (self.wheel.s > 0 or "M_brake" in piece.loads)
 
     def weight(self) -> Array:
         slope, uphill = self.road
@@ -194,8 +200,7 @@ class Carried:
             u = (y[VELOCITY] + np.cross(y[SPIN], self.contact(*self.axle(piece, t)[:2])[0]))[:2]
             return float(np.linalg.norm(u)) - 1e-9
 
-        rubs = self.wheel.s > 0 or "M_brake" in piece.loads
-        if rubs:
+        if self.rubs(piece):
             found["spin" if sign else "held"] = spin if sign else reserve
         if contact == "slides":
             found["slip"] = slip
@@ -206,7 +211,7 @@ class Carried:
     def mode_at(self, piece: Piece, t: float, y: Array, contact: str, stopped: bool) -> tuple[str, int]:
         """Held before rolling, where the spin is zero."""
         spin = float(y[SPIN] @ self.axle(piece, t)[0])
-        if not (self.wheel.s > 0 or "M_brake" in piece.loads) or not (stopped or spin == 0):
+        if not self.rubs(piece) or not (stopped or spin == 0):
             return contact, int(np.sign(spin))
         now = self.solve(piece, (contact, 0), t, y)
         if abs(now.tau) <= self.wheel.s * now.force[2] + now.brake + 1e-9:

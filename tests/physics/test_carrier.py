@@ -1,6 +1,9 @@
-"""A wheel carrier that steers and leans: closed forms, its own reference, jumps of its rates, springs, power.
+"""A wheel on its carrier (`guided`), which holds heading and tilt, or steers and leans it: closed forms, its own
+reference, jumps of the rates, springs and inertias that rise towards it, power, rates, model exchange.
 
-R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta). SI units.
+R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta), I = J_z + m rho^2. Along e1 v = -rho omega_z and
+I omega_z' = M_3 + tau - rho F_1 while it grips and theta stands; N = m g - F_Z then. Straight motions that friction
+stops, or in which it slides: test_straight.py. SI units.
 """
 
 from collections.abc import Callable, Sequence
@@ -9,25 +12,34 @@ from math import cos, pi, radians, sin, sqrt
 import numpy as np
 import pytest
 from scipy.integrate import simpson, solve_ivp
-from support.bounds import absolute_error, beyond, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import OK, STATES, Value, shifted
+from wheelfmu.fmu.driver import ERROR, OK, STATES, Value, shifted
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library, Run
+from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.reference import Wheel
 from wheelfmu.truth.reference.carried import Carried, Piece
 from wheelfmu.truth.scenes import GENERAL
 from wheelfmu.truth.schedule import Schedule
-from wheelfmu.truth.sliding import UPRIGHT
+from wheelfmu.truth.sliding import SLIDES, UPRIGHT
 
 M, R_0, TUBE, J_X, J_Z, G = 20.0, 0.3, 0.05, 0.9, 1.8, 9.81
 R = R_0 + TUBE
 V = 10.0  # m/s
 ROLLS = {**UPRIGHT, "guided": True, "phi_dot_start": -V / R}
 CAMBER = radians(75)
-formulations = pytest.mark.parametrize("formulation", [2, 3], ids=["reduced", "multibody"])
+FREE, STOPPED = {"guided": False}, {"phi_dot_start": 0.0}
 READ = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "omega_z", "omega_z_dot", "v_x", "v_y")
 READ += ("lambda_3", "lambda_x", "lambda_y", "tau", "M_guide_1", "M_guide_2", "slip_x", "slip_y")
+
+
+def rho(theta: float) -> float:
+    return R_0 + TUBE * sin(theta)
+
+
+def inertia(theta: float) -> float:
+    return J_Z + M * rho(theta) ** 2
 
 
 def schedule(pieces: Sequence[Piece]) -> Schedule:
@@ -42,14 +54,98 @@ def driven(library: Library, pieces: Sequence[Piece], times: Sequence[float], to
     return library.simulate(times, tolerance, schedule(pieces), **{**UPRIGHT, "guided": True, **start})
 
 
+def guided(library: Library, times, inputs: dict | None = None, tolerance: float = 1e-10, **start) -> Run:
+    """Its axle keeps its direction: along X and upright unless said."""
+    load = Schedule(((0.0, inputs),)) if inputs else None
+    return library.simulate(times, tolerance, load, **{**UPRIGHT, "guided": True, **start})
+
+
 def held(psi_dot: float, theta_dot: float = 0.0, end: float = 1.0, **loads: float) -> Piece:
     return Piece(0.0, end, (psi_dot,), (theta_dot,), {name: (value,) for name, value in loads.items()})
 
 
-# ---- closed forms ----
+# ---- closed forms: the axle keeps its direction ----
 
 
-@formulations
+@pytest.mark.parametrize("spin", [10.0, 100.0, 500.0])
+def test_a_fast_spin_costs_the_multibody_form_no_more_steps(library: Library, spin: float) -> None:
+    """The motion is no faster, and neither are the constraints."""
+    runs = [guided(library, [0, 2], None, 1e-8, s=0.003, phi_dot_start=-spin, method=4, formulation=f) for f in (2, 3)]
+    costs = [run.counters["n_rhs"] for run in runs]
+    within(costs[1] / costs[0], 1.5, "evaluations over those of the reduced form")
+    within(abs(runs[1]["X_O"][-1] / runs[0]["X_O"][-1] - 1), 1e-11, "way of the formulations apart, relative")
+
+
+@pytest.mark.parametrize("theta", [pi / 2, CAMBER, 2.3])
+def test_loads_move_it_along_its_heading_and_the_carrier_takes_the_rest(
+    library: Library, formulation: int, theta: float
+) -> None:
+    """Moments about O of ground, load and carrier balance across the axle; none is gyroscopic."""
+    load = {"F_X": 8.0, "F_Y": -7.0, "F_Z": -30.0, "M_1": 2.0, "M_2": 0.5, "M_3": -3.0}
+    spun = -3.0 - rho(theta) * 8.0
+    N, along = M * G + 30.0, -8.0 - M * rho(theta) * spun / inertia(theta)
+    want = {"omega_z_dot": spun / inertia(theta), "lambda_3": N, "lambda_y": 7.0, "lambda_x": along}
+    want |= {"M_guide_1": N * R_0 * cos(theta) - 7.0 * (R_0 * sin(theta) + TUBE) - 2.0}
+    want |= {"M_guide_2": along * TUBE * cos(theta) - 0.5, "theta": theta, "psi": 0.0, "theta_dot": 0.0, "psi_dot": 0.0}
+    times = [0.0, 0.7, 2.0]
+
+    def error(**change) -> float:
+        start = {"theta_start": theta, "phi_dot_start": -30.0, "formulation": formulation, **GENERAL, **change}
+        run = guided(library, times, load, **start)
+        spin = absolute_error(run["omega_z"], -30.0 + want["omega_z_dot"] * np.array(times))
+        return max(spin, *(absolute_error(run[name], value) for name, value in want.items()))
+
+    within(error(), 1e-9, "reactions, N, N m, angles, rad, and rates")
+    beyond(error(**FREE), 1.0, "reactions and angles of the wheel that is not guided")
+
+
+def test_it_leans_at_rest_on_the_moment_of_its_weight(library: Library) -> None:
+    run = guided(library, [0.0, 60.0], theta_start=CAMBER, **STOPPED)
+    within(absolute_error(run["M_guide_1"], M * G * R_0 * cos(CAMBER)), 64 * 10 * EPSILON, "M_guide_1, N m")
+    assert not run["M_guide_2"].any() and not run["omega_z"].any()
+    free = library.simulate([0.0, 0.5], theta_start=CAMBER, **STOPPED)
+    assert not free["M_guide_1"].any() and not free["M_guide_2"].any()
+    beyond(absolute_error(free["theta"], CAMBER), 0.1, "tilt of the wheel that is not guided, rad")
+
+
+@pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
+def test_free_of_friction_it_rolls_straight_for_ever(library: Library, method: int) -> None:
+    """Unfolded: nothing is integrated, whatever J_x and J_y are, and also where it may slide."""
+    times = [0.0, 1.0, 1e6 if method == 1 else 100.0]
+    start = {"theta_start": CAMBER, "psi_start": 0.7, "phi_dot_start": -10.0, "mu_max": 0.5, "mu_slide": 0.4}
+    run = guided(library, times, method=method, **start, **GENERAL)
+    way = 10.0 * rho(CAMBER) * run.t
+    found = [run["X_O"] * cos(0.7) + run["Y_O"] * sin(0.7), -run["phi"] * rho(CAMBER), way]
+    within(absolute_error(found, [way, way, way]) / way[-1], 1024 * EPSILON, "place, relative")  # a thousand steps
+    assert (run.counters["n_steps"] == 0) == (method == 1)
+    if method == 1:
+        beyond(guided(library, [0.0, 1.0], s=1e-9, **start).counters["n_steps"], 0, "steps with friction")
+
+
+def test_a_guided_wheel_does_not_jam_where_a_tilting_one_does(library: Library) -> None:
+    scene = SLIDES["jams"]
+    start = {**scene.start, "theta_dot_start": 0.0}
+    on_carrier = library.simulate([0.0, scene.duration], 1e-10, **start, guided=True)
+    assert on_carrier.end is None and on_carrier["lambda_3"] == pytest.approx(M * G, abs=1e-12)
+    free = library.simulate([0.0, scene.duration], 1e-10, **scene.start)
+    assert free.ended is not None and "jams" in free.ended
+
+
+def test_a_load_lifts_it_off_and_a_ground_that_pulls_keeps_it_without_friction(library: Library) -> None:
+    lift = {"F_Z": (0.0, M * G)}  # the weight at 1 s
+    start = {"theta_start": CAMBER, "phi_dot_start": -10.0, "s": 0.02}
+    ended = guided(library, [0.0, 2.0], lift, **start)
+    assert ended.ended is not None and "lifted off" in ended.ended
+    within(abs(ended.t[-1] - 1.0), 1e-8, "instant at which it lifts off, s")
+    kept = guided(library, [0.0, 1.0, 2.0], lift, **start, keep_contact=True)
+    lost = 0.02 * M * G * 0.5 / inertia(CAMBER)
+    within(absolute_error(kept["omega_z"][1:], -10.0 + lost), 64 * 10 * EPSILON, "spin, rad/s")
+    within(absolute_error(kept["lambda_3"], M * G * (1 - kept.t)), 16 * M * G * EPSILON, "normal force, N")
+
+
+# ---- closed forms: it steers and leans ----
+
+
 def test_in_a_steady_turn_the_road_gives_m_v_psi_dot_and_the_carrier_turns_the_angular_momentum(
     library: Library, formulation: int
 ) -> None:
@@ -66,7 +162,6 @@ def test_in_a_steady_turn_the_road_gives_m_v_psi_dot_and_the_carrier_turns_the_a
     beyond(error(1.001), 1e-2, "the same with 0.1 % more")
 
 
-@formulations
 def test_on_a_cambered_circle_forces_and_moment_are_those_of_a_rigid_body_that_turns_about_the_vertical(
     library: Library, formulation: int
 ) -> None:
@@ -88,7 +183,6 @@ def test_on_a_cambered_circle_forces_and_moment_are_those_of_a_rigid_body_that_t
     beyond(abs(gyroscopic[0]), 10.0, "gyroscopic moment, N m")
 
 
-@formulations
 def test_a_heading_that_gathers_speed_asks_for_the_inertia_across_the_axle(library: Library, formulation: int) -> None:
     """Upright: M_guide_2 = I_22 psi_ddot, where I_22 turns with phi: at rest here."""
     start = {"phi_start": 0.3, "phi_dot_start": 0.0, "formulation": formulation}
@@ -134,6 +228,19 @@ def test_the_straight_wheel_in_its_turning_frame_takes_the_same_path(library: Li
     assert run["omega_z"][-1] == 0 and run["friction_mode"][-1] == 0
 
 
+def test_after_many_turns_the_path_has_all_its_digits(library: Library, formulation: int) -> None:
+    """A hundred circles, from a heading of a million turns."""
+    turn = 2 * pi
+    start = {**ROLLS, "psi_start": 2e6 * pi + 0.3, "formulation": formulation}
+    run = driven(library, [held(turn, end=100.25)], [*np.arange(0.0, 101.0, 2.0), 100.25], 1e-10, **start)
+    heading = start["psi_start"] % (2 * pi)
+    radius = V / turn
+    want = [radius * (sin(heading + pi / 2) - sin(heading)), radius * (cos(heading) - cos(heading + pi / 2))]
+    within(absolute_error([run["X_O"][-2], run["Y_O"][-2]], 0.0), 1e-7, "place after whole circles, m")
+    within(absolute_error([run["X_O"][-1], run["Y_O"][-1]], want), 1e-7, "place a quarter on, m")
+    within(absolute_error(run["omega_z"], -V / R), 1e-10, "spin, rad/s")
+
+
 # ---- the reference ----
 
 STEER, LEAN = (0.5, 0.8, -0.6, 0.3), (-0.3, 0.9, -0.4, -0.2)
@@ -144,10 +251,12 @@ ROUGH = {**GENERAL, "theta_start": 1.3, "psi_start": 0.4, "phi_start": 0.2, "phi
 SLIPPERY = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 3.0, "slip_y_start": -2.0}
 SURFACES: dict[str, tuple[dict[str, float], dict]] = {
     "rolls": (ROUGH, PUSH),
-    "rubs": (ROUGH | {"s": 0.02}, BRAKED),
-    "on a slope": (ROUGH | {"slope": 0.2, "slope_direction": 1.1}, PUSH),
+    "rubs on a slope": (ROUGH | {"s": 0.02, "slope": 0.2, "slope_direction": 1.1}, BRAKED),
     "slides": (ROUGH | {"s": 0.02} | SLIPPERY, BRAKED),
+    "regularized": (ROUGH | {"s": 0.02, "friction_law": 2, "omega_s": 0.5}, BRAKED),
 }
+surfaces = pytest.mark.parametrize(("start", "loads"), SURFACES.values(), ids=SURFACES)
+courses = pytest.mark.parametrize("course", [((0.0,), (0.0,)), (STEER, LEAN)], ids=["held", "steers and leans"])
 CONSTANTS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
 
 
@@ -156,29 +265,34 @@ def carried(start: dict[str, float]) -> Carried:
     angles = {name: start[f"{name}_start"] for name in ("psi", "theta", "phi", "phi_dot") if f"{name}_start" in start}
     slip = (start.get("slip_x_start", 0.0), start.get("slip_y_start", 0.0))
     road = (start.get("slope", 0.0), start.get("slope_direction", 0.0))
-    return Carried(wheel, **angles, mu_max=start.get("mu_max", np.inf), mu_slide=start.get("mu_slide", 0.0), slip=slip,
-                   road=road)  # fmt: skip
+    grip = {"mu_max": start.get("mu_max", np.inf), "mu_slide": start.get("mu_slide", 0.0), "slip": slip}
+    return Carried(wheel, **angles, **grip, road=road, omega_s=start.get("omega_s", 0.0))
 
 
-@formulations
-@pytest.mark.parametrize("surface", SURFACES)
-def test_under_cubic_rates_it_moves_as_a_rotation_matrix_in_fixed_axes(
-    library: Library, surface: str, formulation: int
-) -> None:
-    start, loads = SURFACES[surface]
-    times, pieces = np.linspace(0, 1, 6), [Piece(0.0, 1.0, STEER, LEAN, loads)]
+@courses
+@surfaces
+def test_it_moves_as_a_rotation_matrix_in_fixed_axes_by_both_formulations(library: Library, course, start, loads):
+    times, pieces = np.linspace(0, 1, 6), [Piece(0.0, 1.0, *course, loads)]
     want = carried(start).run(pieces, times)
 
-    def errors(**change: float) -> dict[str, float]:
-        run = driven(library, pieces, times, **{**start, **change}, formulation=formulation)
-        return {name: absolute_error(run[name], want[name]) for name in READ}
+    def apart(found: Run, expected: dict[str, np.ndarray] | Run) -> dict[str, float]:
+        return {name: absolute_error(found[name], expected[name]) for name in READ}
 
-    within(errors(), 1e-9, "apart, SI")
-    beyond(max(errors(J_z=1.8002).values()), 1e-5, "apart with another J_z, SI")
+    runs = [driven(library, pieces, times, **start, formulation=formulation) for formulation in (2, 3)]
+    for run in runs:
+        within(apart(run, want), 1e-9, "apart, SI")
+    if not any(course[0]):  # the multibody form has two constraints more
+        bound = 1e-9 if "mu_slide" in start else 64 * 200 * EPSILON  # N
+        within(apart(*runs), bound, "formulations apart, SI")
+        assert not any(run[name].any() for run in runs for name in ("theta_dot", "psi_dot"))
+    beyond(
+        max(apart(driven(library, pieces, times, **{**start, "J_z": 1.8002}), want).values()),
+        1e-5,
+        "with another J_z, SI",
+    )
 
 
-@formulations
-def test_it_slides_out_grips_and_stands_as_the_reference_does(library: Library, formulation: int) -> None:
+def test_it_slides_out_grips_and_stands_as_the_reference_does(library: Library) -> None:
     start = {**GENERAL, "s": 0.02, "theta_start": 1.5, "phi_dot_start": -28.0, "mu_max": 0.3, "mu_slide": 0.25}
     turn = {"M_brake": (0.0,)}
     pieces = [Piece(0.0, 0.8, (0.0, 0.5), (0.0, 0.2), turn), Piece(0.8, 2.0, (0.4, -0.4), (0.16, -0.15), turn)]
@@ -186,10 +300,11 @@ def test_it_slides_out_grips_and_stands_as_the_reference_does(library: Library, 
     reference = carried(start)
     want = reference.run(pieces, times)
     assert [name for _, name in reference.transitions] == ["grip", "slip"]
-    run = driven(library, pieces, times, **start, formulation=formulation)
-    within({name: absolute_error(run[name], want[name]) for name in READ}, 2e-7, "apart, SI")  # it starts with a slip
     slide, end = (t for t, _ in reference.transitions)
-    assert run["contact_mode"].tolist() == [int(slide < t < end) for t in times]
+    for formulation in (2, 3):
+        run = driven(library, pieces, times, **start, formulation=formulation)
+        within({name: absolute_error(run[name], want[name]) for name in READ}, 2e-7, "apart, SI")  # a slip begins
+        assert run["contact_mode"].tolist() == [int(slide < t < end) for t in times]
 
 
 # ---- jumps ----
@@ -229,7 +344,6 @@ def after_jump(library: Library, jump: str, formulation: int, ramp: float) -> di
     }
 
 
-@formulations
 @pytest.mark.parametrize("jump", JUMPS)
 def test_a_jump_of_the_rates_is_the_limit_of_ever_steeper_ramps(library: Library, jump: str, formulation: int) -> None:
     """Their errors fall with their duration, to what the solver leaves. A ramp that relieves the ground is looked at as
@@ -253,7 +367,6 @@ def test_a_jump_of_the_rates_is_the_limit_of_ever_steeper_ramps(library: Library
     within(max(errors[1] / errors[0], errors[2] / errors[1]), 0.2, "errors of ten times shorter ramps")
 
 
-@formulations
 def test_a_wheel_that_its_brake_holds_stays_held_while_its_carrier_swings(library: Library, formulation: int) -> None:
     """As over ramps: the outputs read after each jump show no spin, and a moment far below the brake's capacity."""
     lean = {"guided": True, "theta_start": CAMBER, "phi_dot_start": 0.0, "formulation": formulation, "s": 0.004}
@@ -346,66 +459,147 @@ def test_a_heading_is_held_without_drift_by_the_rate_that_leads_to_the_next(libr
             beyond(b, 1e-6, "error, SI")
 
 
-# ---- springs, power, turns ----
+# ---- the limits that it is ----
+
+
+def rising(errors: list[float]) -> float:
+    """The order of convergence between the last two of errors whose parameter rises tenfold."""
+    return float(np.log10(errors[-2] / errors[-1]))
+
+
+DRIVE = {"M_3": -6.0, "F_Y": 20.0, "F_Z": -40.0}
+
+
+def test_infinite_inertia_across_the_axle_is_its_limit(library: Library) -> None:
+    times = np.linspace(0, 1, 11)
+    names = ("X_O", "Y_O", "omega_z", "lambda_x", "lambda_y", "lambda_3", "slip_x", "slip_y")
+    road = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 2.0, "slip_y_start": 0.5, "theta_start": CAMBER}
+    want = guided(library, times, DRIVE, **road)
+
+    def error(times_J: float) -> float:
+        heavy = dict.fromkeys(("J_x", "J_y"), 0.9 * times_J)
+        free = guided(library, times, DRIVE, **road, **heavy, **FREE)
+        return max(absolute_error(free[name], want[name]) for name in names)
+
+    errors = [error(times_J) for times_J in (1e4, 1e5, 1e6)]
+    within(errors[-1], 1e-3, "outputs of a million J_x, SI")
+    within(abs(rising(errors) - 1), 2e-3, "order of convergence less 1")
+    beyond(error(1), 1.0, "outputs of the usual J_x, SI")
+
+
+LED = ("X_O", "Y_O", "psi", "theta", "omega_z", "M_guide_1", "M_guide_2")
 
 
 def sprung(library: Library, stiffness: float) -> np.ndarray:
-    """The free wheel, held by damped springs to a heading and a tilt that move, after 1 s."""
-    wheel = exchange(library, **{**UPRIGHT, "theta_start": CAMBER, "phi_dot_start": -10.0})
+    """LED of the free wheel after 1 s, held by damped springs to a heading and a tilt that move; their moments."""
+    wheel = exchange(library, **{**UPRIGHT, "theta_start": CAMBER, "phi_dot_start": -10.0}, **DRIVE)
     index = {name: k for k, name in enumerate(STATES)}
     damping = 2 * sqrt(stiffness)
 
-    def rate(t: float, x: np.ndarray) -> np.ndarray:
+    def moments(t: float, x: np.ndarray) -> tuple[float, float]:
         psi, theta = 0.2 * t**3, CAMBER + 0.1 * t**3
         lean = stiffness * (theta - x[index["theta"]]) + damping * (0.3 * t**2 - x[index["theta_dot"]])
         yaw = stiffness * (psi - x[index["psi"]]) + damping * (0.6 * t**2 - x[index["psi_dot"]])
-        assert wheel.set(M_1=lean, M_2=yaw) == OK
+        return lean, yaw
+
+    def rate(t: float, x: np.ndarray) -> np.ndarray:
+        assert wheel.set(**dict(zip(("M_1", "M_2"), moments(t, x), strict=True))) == OK
         wheel.place(t, x)
         return wheel.derivatives()
 
-    done = solve_ivp(rate, (0, 1), wheel.x(), "LSODA", rtol=1e-9, atol=1e-12)
-    x = done.y[:, -1]
-    return np.array([x[index[name]] for name in ("X_O", "Y_O", "psi", "theta", "omega_z")])
+    x = solve_ivp(rate, (0, 1), wheel.x(), "LSODA", rtol=1e-9, atol=1e-12).y[:, -1]
+    return np.array([*(x[index[name]] for name in LED[:5]), *moments(1.0, x)])
 
 
 def test_springs_that_steer_a_free_wheel_lead_to_it_as_they_stiffen(library: Library) -> None:
-    run = driven(
-        library, [Piece(0.0, 1.0, (0, 0, 0.6), (0, 0, 0.3))], [0.0, 1.0], theta_start=CAMBER, phi_dot_start=-10.0
-    )
-    want = np.array([run[name][-1] for name in ("X_O", "Y_O", "psi", "theta", "omega_z")])
-    errors = [float(np.abs(sprung(library, stiffness) - want).max()) for stiffness in (1e4, 1e5, 1e6)]
-    within(abs(np.log10(errors[1] / errors[2]) - 1), 0.1, "order in the compliance less 1")
-    within(errors[-1], 1e-3, "apart at 1e6 N m/rad, SI")
+    loads = {name: (value,) for name, value in DRIVE.items()}
+    course = Piece(0.0, 1.0, (0, 0, 0.6), (0, 0, 0.3), loads)
+    run = driven(library, [course], [0.0, 1.0], theta_start=CAMBER, phi_dot_start=-10.0)
+    want = np.array([run[name][-1] for name in LED])
+    errors = [np.abs(sprung(library, stiffness) - want) for stiffness in (1e4, 1e5, 1e6)]
+    for k, name in enumerate(LED):
+        within(abs(rising([error[k] for error in errors]) - 1), 0.1, f"order of {name} in the compliance less 1")
+    within(float(errors[-1][:5].max()), 1e-3, "apart at 1e6 N m/rad, SI")
+    within(float(errors[-1].max()), 1e-2, "moments apart at 1e6 N m/rad, N m")
 
 
-@pytest.mark.parametrize("surface", SURFACES)
-def test_the_power_of_carrier_loads_slip_and_friction_changes_its_energy(library: Library, surface: str) -> None:
-    start, loads = SURFACES[surface]
+# ---- power, rates, model exchange ----
+
+
+@courses
+@surfaces
+def test_the_power_of_carrier_loads_slip_and_friction_changes_its_energy(library: Library, course, start, loads):
+    """That of a carrier at rest is zero, and so is that of M_1 and M_2."""
     times = np.linspace(0, 0.5, 501)
-    run = driven(library, [Piece(0.0, 0.5, STEER, LEAN, loads)], times, **start)
+    run = driven(library, [Piece(0.0, 0.5, *course, loads)], times, **start)
     force = {name: a + b * times for name, (a, b) in loads.items()}
     omega_2 = run["psi_dot"] * np.sin(run["theta"])
 
-    def error(judged: float) -> float:
+    def error(judged: float, slips: float = 1.0) -> float:
         power = force["F_X"] * run["X_O_dot"] + force["F_Y"] * run["Y_O_dot"] + force["F_Z"] * run["Z_O_dot"]
         power += force["M_1"] * run["theta_dot"] + force["M_2"] * omega_2 + force["M_3"] * run["omega_z"]
-        power += run["tau"] * run["omega_z"] + run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"]
+        power += run["tau"] * run["omega_z"]
+        power += slips * (run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"])
         power += judged * (run["M_guide_1"] * run["theta_dot"] + run["M_guide_2"] * omega_2)
         return abs(float(simpson(power, x=times)) - (run["E"][-1] - run["E"][0]))
 
     within(error(1.0), 1e-8, "energy off the work, J")
-    beyond(error(0.999), 1e-4, "energy off the work with 0.1 % less of the carrier's, J")
+    if any(course[0]):
+        beyond(error(0.999), 1e-4, "energy off the work with 0.1 % less of the carrier's, J")
+    if "mu_slide" in start:
+        beyond(error(1.0, 0.0), 1.0, "energy off the work without the slip's, J")
 
 
-@formulations
-def test_after_many_turns_the_path_has_all_its_digits(library: Library, formulation: int) -> None:
-    """A thousand circles, also from a heading of a million turns."""
-    turn = 2 * pi
-    start = {**ROLLS, "psi_start": 2e6 * pi + 0.3, "formulation": formulation}
-    run = driven(library, [held(turn, end=1000.25)], [*np.arange(0.0, 1001.0, 20.0), 1000.25], 1e-10, **start)
-    heading = start["psi_start"] % (2 * pi)
-    radius = V / turn
-    want = [radius * (sin(heading + pi / 2) - sin(heading)), radius * (cos(heading) - cos(heading + pi / 2))]
-    within(absolute_error([run["X_O"][-2], run["Y_O"][-2]], 0.0), 1e-6, "place after whole circles, m")
-    within(absolute_error([run["X_O"][-1], run["Y_O"][-1]], want), 1e-6, "place a quarter on, m")
-    within(absolute_error(run["omega_z"], -V / R), 1e-10, "spin, rad/s")
+@surfaces
+def test_the_rates_of_the_carriers_moment_are_those_of_its_course(library: Library, start, loads) -> None:
+    h, names = 1e-4, ("M_guide_1", "M_guide_2")
+    inputs = Schedule(((0.0, loads),))
+    values = {**UPRIGHT, "guided": True, **start}
+    run = attempt(library, values, [0.0, 0.2 - 2 * h, 0.2 - h, 0.2, 0.2 + h, 0.2 + 2 * h], 1e-12, inputs, names)
+    for name in names:
+        before_2, before, _, after, after_2 = run[name][1:]
+        course = (8 * (after - before) - (after_2 - before_2)) / (12 * h)
+        within(abs(run[f"{name}_dot"][3] - course), 1e-9, f"rate of {name}, N m/s")
+        beyond(abs(course), 0.1, f"rate of {name} at all, N m/s")
+
+
+@surfaces
+def test_the_carriers_moment_answers_each_load_as_equilibrium_asks(library: Library, start, loads) -> None:
+    """By a moment across the axle: its negative; by another load: the finite change of what is read."""
+    names = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+    with library.wheel() as w:
+        w.start(tolerance=1e-10, **{**UPRIGHT, "guided": True, **start}, M_3=-2.0)
+        slopes = w.jacobian(("M_guide_1", "M_guide_2"), names)
+        within(absolute_error(slopes[:, 3:5], -np.eye(2)), 64 * EPSILON, "derivative by M_1, M_2 off -1")
+        before = np.array(w.get("M_guide_1", "M_guide_2"))
+        for k, load in enumerate(names):
+            value = w.get(load)[0]
+            assert w.set(**{load: value + 1.0}) == OK
+            change = np.array(w.get("M_guide_1", "M_guide_2")) - before
+            within(absolute_error(change, slopes[:, k]), 64 * 60 * EPSILON, f"moments by {load}, N m")
+            assert w.set(**{load: value}) == OK
+        at_start = library.wheel().initializing(**{**UPRIGHT, "guided": True, **start})
+        assert not at_start.jacobian(("M_guide_1", "X_O_dot"), ("theta_dot_start", "psi_dot_start")).any()
+
+
+def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) -> None:
+    start = {**UPRIGHT, "theta_start": CAMBER, "phi_dot_start": -10.0, "guided": True, "F_X": 3.0, "F_Y": 20.0}
+    wheel = exchange(library, **start)
+
+    def rate(t: float, x: np.ndarray) -> np.ndarray:
+        wheel.place(t, x)
+        return wheel.derivatives()
+
+    done = solve_ivp(rate, (0, 1), wheel.x(), "DOP853", rtol=1e-11, atol=1e-11)
+    run = guided(library, [0.0, 1.0], {"F_X": 3.0, "F_Y": 20.0}, theta_start=CAMBER, phi_dot_start=-10.0)
+    within(absolute_error(done.y[:, -1], [run[name][-1] for name in STATES]), 64 * 10 * EPSILON, "states, SI")
+    assert [bool(np.ptp(row)) for row in done.y] == [name in ("X_O", "phi", "omega_z") for name in STATES]
+    wheel.place(1.0, done.y[:, -1])
+    want = [run[name][-1] for name in ("M_guide_1", "M_guide_2")]
+    within(absolute_error(wheel.get("M_guide_1", "M_guide_2"), want), 64 * 10 * EPSILON, "carrier's moment, N m")
+
+
+@pytest.mark.parametrize("name", ["theta_dot_start", "psi_dot_start"])
+def test_a_guided_wheel_whose_axle_turns_at_the_start_is_rejected(library: Library, name: str) -> None:
+    done = attempt(library, {"guided": True, name: 0.1}, [0.0, 1.0])
+    assert done.status == ERROR and done.messages[0].endswith("rad/s: a guided wheel needs 0 for both.")
