@@ -1,6 +1,7 @@
 """What stands in the way of a set-up has one sentence, and what may be deleted is not needed."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -39,6 +40,22 @@ def test_a_linked_environment_is_refused_and_keeps_its_files(checkout: Path, tmp
     said = refused(["bash", "scripts/run"], checkout)
     (checkout / ".venv").unlink()
     assert said.startswith("run: .venv is a symbolic link") and (tmp_path / "mine.txt").exists()
+
+
+def test_pip_alone_installs_the_lock_file_where_uv_cannot_be_installed(tmp_path: Path) -> None:
+    """Partner: the second set-up would fail, were anything installed again."""
+    copy, constraint = tmp_path / "copy", tmp_path / "no_uv.txt"
+    copy.mkdir()
+    copy_checkout(copy)
+    lock = copy / "requirements.lock"
+    lock.write_text("".join(re.findall(r"^(?:tabulate|uv)==.*\n(?: .*\n)+", lock.read_text(), re.MULTILINE)))
+    constraint.write_text("uv<0\n")
+    for more, said in (({}, "Installing Python packages into .venv\n"), ({"PIP_NO_INDEX": "1"}, "")):
+        environment = os.environ | {"PIP_CONSTRAINT": str(constraint)} | more
+        done = subprocess.run(["bash", "scripts/setup"], cwd=copy, env=environment, capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (0, said), done.stderr
+    programs = {path.name for path in (copy / ".venv" / "bin").iterdir()}
+    assert "tabulate" in programs and "uv" not in programs
 
 
 def test_lint_without_git_is_refused(checkout: Path) -> None:
