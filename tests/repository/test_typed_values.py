@@ -72,23 +72,6 @@ FAULTS = {
         "view motion.csv --r_0 -1 --r 0",
         "view motion.csv --box 0 1 1",
     ),
-    "values that exclude each other": (
-        "must be at least as large, and is 0.",
-        "run mu_slide=0.4",
-        "study --vary s=0,0.1 --set mu_slide=0.4",
-        "study --vary mu_slide=0.3,0.4",
-    ),
-    "a guided wheel that is to turn its axle": (
-        "rad/s: a guided wheel needs 0 for both.",
-        "run guided=true psi_dot_start=1",
-        "study --vary psi_dot_start=1,2 --set guided=true",
-    ),
-    "a road that stands": (
-        "it must be less than 1.5708.",
-        "run slope=90deg",
-        "study --vary slope=90deg",
-        "example car slope=90deg",
-    ),
     "a name that is not there": (
         "Do you mean ",
         "run thetastart=1",

@@ -20,7 +20,6 @@ from wheelfmu.fmu.values import (
     interval,
     moments,
     preset,
-    refusal,
     scale,
     single,
     spin,
@@ -100,8 +99,6 @@ def values(arguments: list[str]) -> dict[str, str]:
     if float(found.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
     own = {name: takes[name].number_of(found.get(name, v.start)) for name, v in variables("parameter").items()}
-    if fault := refusal(own):
-        raise Fault(fault)
     if "output_interval" not in found:
         longest = float(RUN["output_interval"].start) * min(1.0, scale(own, s=1))
         found["output_interval"] = repr(interval(own, longest))

@@ -9,7 +9,7 @@ import argparse
 import json
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from fractions import Fraction
 from typing import Any, NamedTuple, NoReturn
@@ -39,35 +39,6 @@ UPRIGHT = {"psi_start": 0.0, "theta_start": math.pi / 2, "X_O_start": 0.0, "Y_O_
 POINTS = 40  # rows in the fastest period of spin and nutation
 HUB = 0.1  # of the radius: how far hub and spokes may be from the plane of a wheel with a thin tube, root mean square
 ROUNDING = 1e-9  # of a moment: an excess that is no fault
-# What wheel.fmu refuses at a start though each value is within its limits: parameters, condition, its message.
-REFUSED: tuple[tuple[tuple[str, ...], Callable[..., Any], str], ...] = (
-    (
-        ("theta_start",),
-        lambda theta: math.sin(theta) <= 1e-7,
-        "theta_start = {:.9g} rad: the wheel must stand above the ground, 0 < theta < 3.14159.",
-    ),
-    (("slope",), lambda slope: slope >= math.pi / 2, "slope = {:.9g} rad: it must be less than 1.5708."),
-    (
-        MOMENTS,
-        lambda *J: max(J) > (sum(J) - max(J)) * (1 + 1e-12),
-        "J_x, J_y, J_z = {:.9g}, {:.9g}, {:.9g} kg m2: none may exceed the sum of the other two.",
-    ),
-    (
-        ("psi_dot_start", "theta_dot_start", "guided"),
-        lambda psi_dot, theta_dot, guided: guided and (psi_dot or theta_dot),
-        "psi_dot_start, theta_dot_start = {:.9g}, {:.9g} rad/s: a guided wheel needs 0 for both.",
-    ),
-    (
-        ("mu_slide", "mu_max"),
-        lambda mu_slide, mu_max: mu_slide > mu_max,
-        "mu_slide = {:.9g}: mu_max must be at least as large, and is {:.9g}.",
-    ),
-    (
-        ("slip_x_start", "slip_y_start", "mu_slide"),
-        lambda slip_x, slip_y, mu_slide: (slip_x or slip_y) and not mu_slide,
-        "slip_x_start, slip_y_start = {:.9g}, {:.9g} m/s: an initial slip needs mu_slide.",
-    ),
-)
 
 
 class Fault(argparse.ArgumentTypeError, ValueError):
@@ -330,15 +301,6 @@ def moments(body: str, m: float = 20.0, r_0: float = 0.3, r: float = 0.05) -> di
         return m * sum(float(Fraction(part)) * (lengths[length] * lengths[length]) for length, part in parts)
 
     return {"J_x": moment("J_x"), "J_y": moment("J_x"), "J_z": moment("J_z")}
-
-
-def refusal(own: Mapping[str, float]) -> str:
-    """The sentence by which wheel.fmu refuses a start with these parameters, each within its limits; else nothing."""
-    for names, refused, text in REFUSED:
-        values = [own[name] for name in names]
-        if refused(*values):
-            return text.format(*values)
-    return ""
 
 
 def doubt(body: Mapping[str, float]) -> str:

@@ -88,8 +88,6 @@ def study_of(arguments: argparse.Namespace) -> Study:
     fields |= {"measures": pairs("--measure", arguments.measure)} if arguments.measure else {}
     study = Study(grid=grid, list=rows, values=values, **fields)
     study.check(known)
-    if text := study.refusal(known):
-        raise StudyError(text)
     return study
 
 

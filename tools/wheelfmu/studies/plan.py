@@ -16,7 +16,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
@@ -325,21 +324,3 @@ class Study:
         ):
             if fault:
                 raise StudyError(text)
-
-    def refusal(self, variables: Mapping[str, Variable]) -> str:
-        """The sentence by which the FMU refuses the last wheel, if it refuses all."""
-        from wheelfmu.fmu.values import moments, refusal
-
-        def starts(name: str) -> bool:  # with its value of the grid or list
-            return self.branch_at is None or not can_change(variables[name])
-
-        same = {name: v.preset for name, v in variables.items() if v.causality == "parameter"} | self.values
-        varied = {name: xs for name, xs in self.varied.items() if name in same and starts(name)}
-        text = ""
-        for xs in product(*varied.values()) if self.grid else zip(*varied.values(), strict=True):
-            own = same | dict(zip(varied, xs, strict=True))
-            if self.body:
-                own |= moments(self.body, own["m"], own["r_0"], own["r"])
-            if not (text := refusal(own)):
-                break
-        return text

@@ -80,9 +80,9 @@ class Component:
 
     def ended(self, t: float) -> Ended:
         """How it ended the run in a step from t on."""
-        last = c_double(t)
+        message, last = self.last_message("it refused a call"), c_double(t)
         self.fmu.dll.fmi2GetRealStatus(self.fmu.component, fmi2LastSuccessfulTime, byref(last))
-        return Ended(self.name, last.value, self.last_message("it refused a call"))
+        return Ended(self.name, last.value, message)
 
     def last_message(self, otherwise: str) -> str:
         """FMI 2.0 doubles the characters % and # of a message."""

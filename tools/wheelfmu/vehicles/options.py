@@ -13,7 +13,7 @@ from functools import cache
 from typing import Self
 
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, limited, number, refusal, single, suggestion, variables
+from wheelfmu.fmu.values import Fault, limited, number, single, suggestion, variables
 from wheelfmu.vehicles.describe import Variable, read
 
 EXAMPLES = ROOT / "examples" / "vehicles"
@@ -160,9 +160,6 @@ def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
         slide, most = (run[f"{name}{side}"] or run[name] for name in ("mu_slide", "mu_max"))
         if slide > most:
             raise Fault(f"mu_slide{side} = {slide:g}: it must be at most mu_max{side} = {most:g}.")
-    road = {name: run[name] for name in ROAD if name in every(vehicle)}
-    if fault := refusal({name: v.preset for name, v in WHEEL.items()} | road):
-        raise Fault(fault)
     return run
 
 
