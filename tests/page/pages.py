@@ -30,7 +30,7 @@ REST = """if (page.live?.kept) page.live.keep(false);
 page.choose(0);
 page.player.set({playing: false, t: 0, speed: 1});
 page.plots.portrait.choose('phase');
-for (const [name, on] of [['follow', true], ['force', false]]) page.switches.flip(name, on);
+for (const [name, on] of [['follow', true], ['axes', false], ['force', false]]) page.switches.flip(name, on);
 page.stage.controls.reset()"""
 # A vector in the road's axes as the scene shows it.
 TURN = "(v) => page.stage.camera.position.clone().set(...v).applyQuaternion(page.stage.road.quaternion).toArray()"

@@ -94,8 +94,14 @@ def phone(browser) -> BrowserContext:
     return found
 
 
+SMALL = """() => [...document.querySelectorAll('button, select, summary, #toggles label, #live input')]
+  .filter((part) => part.type !== 'checkbox' && part.checkVisibility() && !part.closest('.portrait'))
+  .filter((part) => part.getBoundingClientRect().height < 43.5)
+  .map(({outerHTML}) => outerHTML.slice(0, 80))"""
+
+
 @pytest.mark.parametrize("kind", ["recorded", "live"])
-def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kind):
+def test_a_phone_shows_everything_without_scrolling_sideways_and_as_high_as_a_finger(phone, request, kind):
     with opened(phone, request.getfixturevalue(f"{kind}_file")) as page:
         for scheme in ("light", "dark"):
             page.emulate_media(color_scheme=scheme)
@@ -107,25 +113,10 @@ def test_a_phone_shows_everything_without_scrolling_sideways(phone, request, kin
         assert switches["y"] >= scene["y"] + scene["height"] - 2.5  # px; the switches cover no part of the scene
         film = page.locator("#take [name=film]")
         assert film.is_disabled() and "Firefox 130" in film.get_attribute("title")
+        assert page.evaluate(SMALL) == []
         page.evaluate("page.player.pause(); page.player.seek(0)")
         page.locator("#play").tap()
         page.wait_for_function("page.player.t > 0.05")
-
-
-SMALL = """() => [...document.querySelectorAll('button, select, summary, #toggles label, #live input')]
-  .filter((part) => part.type !== 'checkbox' && part.checkVisibility() && !part.closest('.portrait'))
-  .filter((part) => part.getBoundingClientRect().height < 43.5)
-  .map(({outerHTML}) => outerHTML.slice(0, 80))"""
-
-
-@pytest.mark.parametrize("size", [(390, 844), (844, 390)])
-def test_on_a_phone_everything_to_touch_is_as_high_as_a_finger(browser, live_file, size):
-    look = {"viewport": dict(zip(("width", "height"), size, strict=True)), "has_touch": True, "is_mobile": True}
-    with opened(window_of(browser, **look), live_file) as page:
-        assert page.evaluate(SMALL) == []
-        page.locator("#live [name=scenes]").click()
-        assert page.evaluate(SMALL) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
 
 
 def test_on_a_phone_on_its_side_scene_clock_and_story_are_in_sight_together(browser, live_file):
@@ -139,3 +130,5 @@ def test_on_a_phone_on_its_side_scene_clock_and_story_are_in_sight_together(brow
         drawn = page.locator(".plot canvas").first.bounding_box()
         assert drawn["y"] + drawn["height"] <= 390 and drawn["width"] > 300
         assert page.locator("#time").bounding_box()["width"] > 200
+        page.locator("#live [name=scenes]").click()
+        assert page.evaluate(SMALL) == [] and page.evaluate("document.documentElement.scrollWidth") <= 844

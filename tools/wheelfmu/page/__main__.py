@@ -11,7 +11,7 @@ from pathlib import Path
 from wheelfmu.fmu.outputs import check
 from wheelfmu.fmu.values import Fault
 from wheelfmu.page import document, options
-from wheelfmu.page.bodies import Body, ViewError, read_bodies
+from wheelfmu.page.bodies import Body, read_bodies
 
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
 
@@ -20,7 +20,7 @@ def said(write: Callable[[], tuple[Path, int]]) -> int:
     """Writes a page and names it; a fault of the input is one sentence and exit status 2."""
     try:
         output, size = write()
-    except (ViewError, Fault) as fault:
+    except Fault as fault:
         print(f"view: {fault}", file=sys.stderr)
         return 2
     print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
@@ -49,7 +49,7 @@ def named(bodies: list[Body], labels: list[str]) -> list[Body]:
     """Bodies with distinct names, the second `wheel` as `wheel 2`; called by label, place on a car, or name."""
     if len(labels) > len(bodies):
         count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
-        raise ViewError(f"--labels names {len(labels)} bodies, but the files hold {count}.")
+        raise Fault(f"--labels names {len(labels)} bodies, but the files hold {count}.")
     seen: Counter[str] = Counter()
     found = []
     for body, label in zip_longest(bodies, labels):

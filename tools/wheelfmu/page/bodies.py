@@ -27,10 +27,6 @@ ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
 PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
 
 
-class ViewError(Exception):
-    """A file cannot be shown; the message is one sentence for the user."""
-
-
 @dataclass(frozen=True)
 class Body:
     """A wheel (size None) or a box (size: length, width, height in m), one row per communication point.
@@ -45,39 +41,25 @@ class Body:
     label: str = ""
 
 
-def read_columns(path: Path) -> Table:
-    """The table of a CSV file that has a motion."""
-    try:
-        table = read_table(path)
-    except Fault as fault:
-        raise ViewError(str(fault)) from None
-    if "time" not in table.columns:
-        raise ViewError(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
-    if len(table.lines) < 2:
-        raise ViewError(f"{path} has {len(table.lines)} rows of data; a motion needs at least two.")
-    return table
-
-
 def numbers(table: Table, name: str) -> Array:
     """One column as finite numbers."""
-    try:
-        values = np.array(table.numbers(name))
-    except Fault as fault:
-        raise ViewError(str(fault)) from None
+    values = np.array(table.numbers(name))
     if not np.isfinite(values).all():
         line = table.lines[int(np.argmin(np.isfinite(values)))]
-        raise ViewError(f"{table.path}, line {line}: {name} is not finite.")
+        raise Fault(f"{table.path}, line {line}: {name} is not finite.")
     return values
 
 
 def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | None = None) -> list[Body]:
     """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
-    table = read_columns(path)
+    table = read_table(path)
+    if "time" not in table.columns:
+        raise Fault(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
     time = numbers(table, "time")
     if not (np.diff(time) >= 0).all():
-        raise ViewError(f"{path}: the column time does not rise.")
+        raise Fault(f"{path}: the column time does not rise.")
     if time[-1] == time[0]:
-        raise ViewError(f"{path} has no motion to show: all rows are of one instant.")
+        raise Fault(f"{path} has no motion to show: all rows are of one instant.")
     kept = np.append(np.diff(time) > 0, True)  # of two rows at one instant the later
     groups: dict[str, dict[str, str]] = defaultdict(dict)
     for name in filter("time".__ne__, table.columns):
@@ -94,9 +76,9 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
             body = Body(prefix or path.stem, {"time": time[kept]} | columns)
             bodies.append(make_wheel(body, given or {}) if rolls else body)
         elif not prefix and len(groups) == 1:
-            raise ViewError(f"{path} lacks the column {', '.join(short for short in POSE if short not in group)}.")
+            raise Fault(f"{path} lacks the column {', '.join(short for short in POSE if short not in group)}.")
     if not bodies:
-        raise ViewError(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
+        raise Fault(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
     wheels = [body for body in bodies if body.parameters]
     return [body if body.parameters else make_box(body, wheels, box) for body in bodies]
 

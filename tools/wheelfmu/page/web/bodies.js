@@ -131,20 +131,25 @@ export class WheelModel {
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
     this.spot = new THREE.Mesh(new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40), new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
-    const [arrow, label] =
+    this.spot.position.z = 0.004 * size;
+    this.slip.position.z = 0.03 * r_0;
+    const uphill =
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
-    [arrow.position.z, label.position.z] = [0.03 * radius, 0.24 * radius];
-    this.uphill = new THREE.Group().add(arrow, label);
-    this.group.add(this.carrier, this.force, this.slip, this.weight, this.side, this.spot, this.uphill, this.path);
+    uphill.forEach((part, i) => part.position.add(new THREE.Vector3(1.2 * radius, 0, [0.03, 0.24][i] * radius)));
+    this.uphill = new THREE.Group().add(...uphill);
+    this.contact = new THREE.Group().add(this.spot, this.uphill, this.force, this.slip, this.weight, this.side);
+    this.group.add(this.carrier, this.contact, this.path);
     this.drawPath();
   }
 
   /**
-   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours; and the
-   * scales of force and slip.
+   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours; the way
+   * uphill; and the scales of force and slip.
    */
   drawPath() {
-    const {wheel: {trace: {points}, table, phases, colour: accent}, size, r_0} = this;
+    const {wheel: {trace: {points}, table, phases, colour: accent, parameters}, size, r_0} = this;
+    this.uphill.visible = parameters.slope > 0;
+    this.uphill.rotation.z = parameters.slope_direction ?? 0;
     const unit = Math.max(0.045 * r_0, 0.006 * size);
     const ribbon = ([begin, end], color, width, layer, opacity) => {
       const first = this.point(begin);
@@ -159,8 +164,9 @@ export class WheelModel {
     const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
     this.load = N.reduce((sum, value) => sum + value, 0) / N.length || 1;  // N, in the mean
     const {M_guide_1 = [0], M_guide_2 = [0]} = table.shown;
-    this.held = Math.max(...M_guide_1.map((moment, i) => Math.hypot(moment, M_guide_2[i])));  // N m, at most
-    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1];
+    const most = Math.max(...M_guide_1.map((moment, i) => Math.hypot(moment, M_guide_2[i])));
+    this.held = most > 1e-9 ? most : Infinity;                               // N m
+    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1] || 1;  // m/s
     dispose(this.path);
     this.whole = ribbon(all, accent, 0.5, 1, 0.3);
     this.path.clear().add(this.whole, ...this.past);
@@ -171,8 +177,12 @@ export class WheelModel {
 
   /** Pose, path, slip, force and balance about e1 at t. show: {path, axes, force, balance, future}. */
   update(t, show) {
-    const {wheel: {table, parameters: {slope = 0, slope_direction: direction = 0}}, r_0, r} = this;
+    const {wheel: {table}, r_0, r} = this;
     const at = (name) => table.value(name, t);
+    const vector = (names, on, scale) => {
+      const known = on && names.every((name) => table.has(name));
+      return new THREE.Vector3(...(known ? names.map(at) : [])).multiplyScalar(scale);
+    };
     const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
     this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
     this.carrier.rotation.set(theta, 0, psi, 'ZYX');
@@ -184,52 +194,28 @@ export class WheelModel {
       ribbon.visible = t >= ribbon.userData.begin;
       showRibbon(ribbon, this.point(t) - ribbon.userData.first);
     }
-    const contact = contactOf(r_0, X, Y, psi, theta);
-    this.spot.position.set(...contact, 0.004 * this.size);
-    this.uphill.visible = slope > 0;
-    const reach = 1.2 * (r_0 + r);
-    this.uphill.rotation.z = direction;
-    this.uphill.position.set(contact[0] + reach * Math.cos(direction), contact[1] + reach * Math.sin(direction), 0);
+    this.contact.position.set(...contactOf(r_0, X, Y, psi, theta), 0);
     const long = 1.1 * (r_0 + r);
-    this.slip.position.set(...contact, 0.03 * r_0);
-    const [along, across] = this.fastest > 0 ? [at('slip_x'), at('slip_y')] : [0, 0];
-    const turned = new THREE.Vector3(along, across, 0).applyAxisAngle(THREE.Object3D.DEFAULT_UP, psi);
-    pointArrow(this.slip, turned.multiplyScalar(long / this.fastest || 0));
-    this.showBalance(show.balance, contact, at);
-    this.showGuide(show.force && this.held > 1e-9, at);
-    this.force.visible = show.force && FORCE.every((name) => table.has(name));
-    if (!this.force.visible) return;
-    this.force.position.set(...contact, 0);
-    pointArrow(this.force, new THREE.Vector3(...FORCE.map(at)).multiplyScalar(long / this.load));
-  }
-
-  /** The moment of the wheel carrier, across the axle. */
-  showGuide(shown, at) {
-    this.guide.visible = this.guideName.visible = shown;
-    if (!shown) return;
-    const moment = new THREE.Vector3(at('M_guide_1'), at('M_guide_2'), 0);
-    pointArrow(this.guide, moment.multiplyScalar(1.5 * (this.r_0 + this.r) / this.held));
+    const slip = vector(['slip_x', 'slip_y'], true, long / this.fastest);
+    pointArrow(this.slip, slip.applyAxisAngle(THREE.Object3D.DEFAULT_UP, psi));
+    pointArrow(this.force, vector(FORCE, show.force, long / this.load));
+    const moment = vector(['M_guide_1', 'M_guide_2'], show.force, 1.5 * (r_0 + r) / this.held);
+    pointArrow(this.guide, moment);
     this.guideName.position.copy(moment).multiplyScalar(1.15);
     this.guideName.visible = this.guide.visible;
+    this.showBalance(show.balance, long / this.load, at);
   }
 
   /** The moments about e1 as arrows about it, and at the contact the forces that two of them come from. */
-  showBalance(shown, contact, at) {
+  showBalance(shown, scale, at) {
     for (const part of [this.moments, this.weight, this.side]) part.visible = shown;
     if (!shown) return;
-    const {m, g = 9.81, r_0, r} = this.wheel.parameters;
+    const {m, g, r_0, r} = this.wheel.parameters;
     const moments = balance(this.wheel.parameters, at);
     for (const [name, turn] of this.turns) bendTurn(turn, BEND * moments[name] / (m * g * r_0));
-    const [psi, theta] = [at('psi'), at('theta')];
-    const across = moments.side / (r_0 * Math.sin(theta) + r);
-    const forces = {
-      weight: new THREE.Vector3(0, 0, at('lambda_3')),
-      side: new THREE.Vector3(-across * Math.sin(psi), across * Math.cos(psi), 0),
-    };
-    for (const [name, force] of Object.entries(forces)) {
-      this[name].position.set(...contact, 0);
-      pointArrow(this[name], force.multiplyScalar(1.1 * (r_0 + r) / this.load));
-    }
+    const [psi, across] = [at('psi'), moments.side / (r_0 * Math.sin(at('theta')) + r)];
+    pointArrow(this.weight, new THREE.Vector3(0, 0, scale * at('lambda_3')));
+    pointArrow(this.side, new THREE.Vector3(-across * Math.sin(psi), across * Math.cos(psi), 0).multiplyScalar(scale));
   }
 }
 

@@ -61,13 +61,8 @@ export class Stage {
 
   /** What draws the scene, or null where there is no WebGL: all else of the page does without. */
   makeRenderer() {
-    const note = (sentence) => Object.assign($('#blind'), {textContent: sentence, hidden: !sentence});
     const {canvas} = this;
-    canvas.addEventListener('webglcontextlost', () => note('The graphics card is not to be had at the moment.'));
-    canvas.addEventListener('webglcontextrestored', () => {
-      note('');
-      this.dirty = true;
-    });
+    canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
     try {
       const renderer = new THREE.WebGLRenderer({canvas, antialias: devicePixelRatio < 2});
       renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -75,7 +70,7 @@ export class Stage {
       renderer.setScissorTest(true);
       return renderer;
     } catch {
-      note('No view in three dimensions: this browser offers no WebGL 2. All else goes on.');
+      $('#blind').hidden = false;
       return null;
     }
   }
