@@ -7,7 +7,6 @@ from contract.call_states import KINDS, OF, SITUATIONS, STATES, TABLE, bring_to,
 
 from wheelfmu.fmu.driver import CO_SIMULATION, DISCARD, ERROR, OK
 from wheelfmu.truth.exchange import loaded
-from wheelfmu.truth.scenes import KINDS as SCENES
 
 TYPES = ("Real", "Integer", "Boolean", "String")
 
@@ -96,24 +95,6 @@ def test_empty_lists_ask_for_nothing_in_any_state(brought, situation, mass):
                 legal = situation in TABLE[function]
                 assert (status == OK, bool(w.take_messages())) == (legal, not legal), (function, places)
                 assert w.serialized() == before, function
-
-
-def test_from_every_state_a_reset_instance_is_a_new_one_to_the_last_byte_and_runs_as_one(wheel):
-    used = [bring_to(wheel(), state) for state in STATES]
-    used += [wheel().start(stop=5.0, tolerance=1e-6, keep_contact=1, **values) for values in SCENES.values()]
-    elsewhere = {"psi_start": 0.3, "X_O_start": 7.0}, {"phi_start": -2.0, "Y_O_start": 0.1}
-    used += [wheel().start(**values) for values in elsewhere]  # the free wheel is unfolded from its start
-    new, runs = wheel().serialized(), {s: wheel().start(s=s).run([0.5, 2.0]) for s in (0.0, 0.03)}
-    for k, w in enumerate(used):
-        if k >= len(STATES):
-            w.put(F_X=1.0).run([2.0])
-        assert k == 0 or w.serialized() != new
-        assert w.reset() == OK
-        assert w.serialized() == new
-        for s, run in runs.items():
-            assert w.start(s=s).run([0.5, 2.0]) == run
-            assert w.reset() == OK
-    assert w.start(s=0.031).run([0.5, 2.0]) != runs[0.03]
 
 
 @pytest.mark.parametrize("state", STATES)

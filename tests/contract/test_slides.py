@@ -31,25 +31,6 @@ def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> Non
     within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1024 * 7 * EPSILON, "velocity later, m/s")
 
 
-def test_another_limit_after_a_reset_is_that_of_the_next_run(wheel) -> None:
-    """The orbit of the run before is the same."""
-    w, fresh = wheel(), wheel()
-    for mu_max, status in ((0.6, OK), (0.45, DISCARD), (0.6, OK)):
-        w.start(mu_max=mu_max)
-        assert w.step(2.0) == status
-        assert w.reset() == OK
-        w.take_messages()
-    assert w.start(mu_max=0.6, mu_slide=0.4).to(2.0).bits() == fresh.start(mu_max=0.6, mu_slide=0.4).to(2.0).bits()
-
-
-def test_a_run_that_can_slide_does_not_end_where_an_earlier_one_of_the_instance_that_could_not_has_ended(wheel) -> None:
-    """Both without sliding friction: the second had some at its start."""
-    w, fresh = wheel().start(mu_max=0.45), wheel()
-    assert w.step(1.0) == DISCARD and w.reset() == OK
-    ends = [each.start(mu_max=0.45, mu_slide=0.4).put(mu_slide=0.0).to(1.0).bits() for each in (w, fresh)]
-    assert ends[0] == ends[1] and w.get("contact_mode") == [1]
-
-
 @pytest.mark.parametrize("start", [7.0, -100.0])
 def test_every_message_of_a_slide_has_the_callers_time_and_its_own_number(wheel, start: float) -> None:
     w, early = (wheel(logging=True).start(start=t, **ROAD).to(t + 2.5) for t in (start, 0.0))

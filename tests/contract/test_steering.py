@@ -124,27 +124,6 @@ def test_absurd_rates_are_refused_and_the_largest_can_be_computed(library: Libra
         assert "lies flat" in w.texts()[-1]
 
 
-@formulations
-@surfaces
-def test_a_state_restored_goes_on_bit_identically(library: Library, road: dict, formulation: int) -> None:
-    def drive(w: FMU2Wheel) -> list[bytes]:
-        bits = []
-        for k in range(6):
-            if k % 3 == 0:
-                steer(w, 1.0 - k, 0.5)
-            bits += [w.bits(), w.by(0.03).bits()]
-        return bits
-
-    with library.wheel() as w, library.wheel() as other:
-        steer(w, 2.0, 0.5)
-        w.start(**LEANS, **road, formulation=formulation)
-        states = [w.serialized(), w.by(0.05).serialized(), w.put(psi_dot_guide=-0.2).serialized()]
-        want = [drive(w.back(state)) for state in states]
-        for state, bits in zip(states, want, strict=True):
-            assert drive(other.back(state)) == bits
-        assert want[1] != want[0]
-
-
 def test_a_run_restored_at_its_start_keeps_the_rates_that_it_started_with(library: Library) -> None:
     """The start is not computed anew from rates that were set later."""
     with library.wheel() as w, library.wheel() as other:

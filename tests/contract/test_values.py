@@ -34,13 +34,6 @@ def test_unknown_references_and_wrong_types_are_errors_and_leave_the_array_alone
     assert get_many(w, "Integer", w.refer("formulation")) == (OK, [1])  # an enumeration is an Integer
 
 
-def test_arrays_without_an_entry_may_be_null(wheel):
-    w, none = wheel().start(), (None, 0, None)
-    assert {w.ask(f"{verb}{kind}", *none) for verb in ("Get", "Set") for kind in ("Real", "Integer", "Boolean")} == {OK}
-    assert {w.ask(f"{which}Derivatives", *none, None) for which in ("SetRealInput", "GetRealOutput")} == {OK}
-    assert w.ask("GetDirectionalDerivative", *none[:2], *none[:2], None, None) == OK
-
-
 def test_of_duplicate_references_the_last_value_counts_and_each_is_read(wheel):
     w, plain = wheel().start(), wheel().start(F_X=30.0)
     force, theta = w.refer("F_X", "theta")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
-from wheelfmu.truth.exchange import Run, exchange, loaded, no_inputs
+from wheelfmu.truth.exchange import exchange, loaded
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import AT_REST
 
@@ -47,22 +47,6 @@ def test_a_state_of_one_kind_is_refused_by_the_other(library: Library) -> None:
         assert "kind of instance" in slave.sentences[-1]
         assert wheel.restore(slave.serialized()) == ERROR
         assert wheel.restore(blob) == OK  # the partner
-
-
-def test_a_restored_wheel_goes_on_with_the_same_bits(library: Library) -> None:
-    with exchange(library, s=0.03) as wheel, exchange(library) as other:
-        Run(wheel, 1e-9, no_inputs).to(2.0)
-        assert wheel.get("n_events")[0] > 2
-        blob = wheel.serialized()
-        ends = []
-        for restored in (wheel, other):
-            run = Run(restored.back(blob), 1e-9, no_inputs)
-            run.t = 2.0
-            restored.place(2.0, restored.x())
-            run.to(4.0)
-            ends.append(restored.bits())
-        run.to(4.5)
-        assert ends[0] == ends[1] != other.bits()
 
 
 def test_a_snapshot_between_trial_steps_that_went_back_in_time_is_restored(library: Library) -> None:

@@ -110,16 +110,6 @@ def test_a_start_after_many_turns_does_not_shorten_how_far_a_free_wheel_goes(whe
         assert wheel().start(psi_start=1e9, phi_start=-1e9).step(far) == status
 
 
-def test_the_time_of_the_last_change_is_part_of_a_state(wheel):
-    """It limits the first step after the next change."""
-    for k in range(40):
-        t = 0.5 + 0.001 * k
-        w = wheel().start(s=0.03, method=4).to(t).put(M_3=0.5).to(t + 0.002)
-        other, later = wheel().back(w.serialized()), wheel().start(s=0.03, method=4).to(t + 0.002).put(M_3=0.5)
-        ends = [each.put(M_3=0.1).to(t + 0.004, 3.0).bits() for each in (w, other, later)]
-        assert ends[0] == ends[1] != ends[2]
-
-
 def test_the_contact_s_velocity_needs_nothing_read_before(wheel):
     w, other = (wheel().start().to(0.7) for _ in range(2))
     assert other.get("X_O_dot", "Y_O_dot")
