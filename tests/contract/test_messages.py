@@ -1,10 +1,11 @@
 """Each message of docs/messages.md has its own names and numbers at their places, in runs that begin at 7.25 s."""
 
 import re
-from collections import defaultdict
 from collections.abc import Iterator
 from itertools import combinations
-from math import inf, isclose, nan, pi
+from math import inf, isclose, pi
+
+from support.refusals import REFUSALS
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Value
 from wheelfmu.fmu.paths import ROOT
@@ -18,136 +19,77 @@ ROLLING = {"theta_start": pi / 2, "phi_dot_start": -60.0}
 PULLED = {"keep_contact": True, "theta_start": 1.2, "theta_dot_start": 4.0, "psi_dot_start": 0.1, "phi_dot_start": 0.0}
 JAMS = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
 LIMIT = "needs a friction coefficient above mu_max"
+JAM = "jams (Painleve's paradox) with mu_slide"
 PULLS = "the ground pulls; without keep_contact the wheel would lift off"
-Part = str | float
-Case = tuple[str, str, list[Part]]  # a message of the page, as it is logged, and what stands at its places
+Case = tuple[str, str]  # as it is logged, and as it must be, numbers to five digits
 
 
 def started(library: Library, **values: Value) -> FMU2Wheel:
     return library.wheel(logging=True).start(START, **values)
 
 
-def ended(library: Library, **values: Value) -> tuple[FMU2Wheel, float]:
-    """The wheel and the instant at which its run has ended."""
+def ended(library: Library, **values: Value) -> tuple[FMU2Wheel, str]:
+    """The wheel, and where its run has ended."""
     w = started(library, **values)
     assert w.step(3.0) == DISCARD
-    return w, w.status(LAST_SUCCESSFUL_TIME)
+    return w, f"at t = {w.status(LAST_SUCCESSFUL_TIME)} s"
 
 
 def ends(library: Library) -> Iterator[Case]:
-    text = "The wheel … at t = … s, theta = … rad: the run ends there."
-    w, end = ended(library, **JAMS, mu_max=0.9, mu_slide=0.8)
-    yield text, w.said(), ["jams (Painleve's paradox) with mu_slide = 0.8", end, *w.get("theta")]
-    w, end = ended(library, mu_max=0.3)
-    yield text, w.said(), [f"{LIMIT} = 0.3", end, *w.get("theta")]
-    assert w.step(0.1) == ERROR
-    yield "…: the wheel … at t = … s. Restore a state or reset.", w.said(), ["fmi2DoStep", f"{LIMIT} = 0.3", end]
+    for values, what in (
+        ({**JAMS, "mu_max": 0.9, "mu_slide": 0.8}, f"{JAM} = 0.8"),
+        ({"mu_max": 0.3}, f"{LIMIT} = 0.3"),
+    ):
+        w, end = ended(library, **values)
+        yield w.said(), f"The wheel {what} {end}, theta = {w.get('theta')[0]} rad: the run ends there."
+        assert w.step(0.1) == ERROR
+        yield w.said(), f"fmi2DoStep: the wheel {what} {end}. Restore a state or reset."
     before = (w := started(library, mu_max=0.3)).serialized()
     for _ in range(100):
         assert w.back(before).step(3.0) == DISCARD
-    yield "… ends were logged; further ones are not logged until a reset.", w.texts()[-1], [100]
+    yield w.texts()[-1], "100 ends were logged; further ones are not logged until a reset."
     w = library.wheel().initializing(
         J_x=0.1, J_y=0.1, J_z=0.1, theta_start=1.0, slip_y_start=-0.5, mu_max=6.0, mu_slide=5.0
     )
     assert w.exitInitializationMode() == ERROR
-    yield "At the start the wheel …: the run ends there.", w.said(), ["jams (Painleve's paradox) with mu_slide = 5"]
+    yield w.said(), f"At the start the wheel {JAM} = 5: the run ends there."
 
 
 def warnings(library: Library) -> Iterator[Case]:
-    _, lift_off = ended(library, **PULLED | {"keep_contact": False})
-    w = started(library, **PULLED).to(lift_off + 1e-3)
-    yield "t = … s: ….", w.said(), [lift_off, PULLS]
-    w = started(library, **ROLLING).give({"M_brake": (FULL - 20, 200.0)}).to(START + 0.3)
-    t = float((said := w.said()).split()[2])
-    text = "t = … s: mu_required = …, more than a dry road gives; mu_max = 0 sets no limit."
-    yield text, said, [t, float(f"{1 + (200 * (t - START) - 20) / FULL:.3g}")]
+    w, _ = ended(library, **PULLED | {"keep_contact": False})
+    lift_off = w.status(LAST_SUCCESSFUL_TIME)
+    yield started(library, **PULLED).to(lift_off + 1e-3).said(), f"t = {lift_off} s: {PULLS}."
+    said = started(library, **ROLLING).give({"M_brake": (FULL - 20, 200.0)}).to(START + 0.3).said()
+    t = float(said.split()[2])
+    mu = f"mu_required = {1 + (200 * (t - START) - 20) / FULL:.3g}"
+    yield said, f"t = {t} s: {mu}, more than a dry road gives; mu_max = 0 sets no limit."
+    for given, used in ((0.1, 1e-4), (1e-16, 1e-13)):
+        said = library.wheel().start(START, tolerance=given).said()
+        yield said, f"The tolerance {given} is outside [1e-13, 0.0001]; {used} is used."
 
 
 def friction(library: Library) -> Iterator[Case]:
     """Instants of the reference (physics/test_friction_events.py, physics/test_sliding.py)."""
     stick, release = started(library, s=0.03).to(START + 1.4).texts()
-    yield "t = … s: stick, omega_z is held at zero.", stick, [START + 1.225520636]
-    yield "t = … s: …, omega_z becomes ….", release, [START + 1.329817, "release", "negative"]
-    (slides,) = started(library, **ROAD).to(START + 0.6).texts()
-    yield "t = … s: the wheel ….", slides, [START + 0.570827, "starts to slide"]
-
-
-def parameters(library: Library) -> Iterator[Case]:
-    """Refused at the end of initialization."""
-    faults: list[tuple[str, dict[str, Value], list[Part]]] = [
-        ("… = …: a finite number is needed.", {"m": nan}, ["m", "nan"]),
-        ("… = …: it must be greater than ….", {"r_0": -0.25}, ["r_0", -0.25, 0]),
-        ("… = …: it must be at least ….", {"s": -0.5}, ["s", -0.5, 0]),
-        ("… = …: it must be at most ….", {"formulation": 4}, ["formulation", 4, 3]),
-        ("… = … rad: it must be less than ….", {"slope": 1.75}, ["slope", 1.75, pi / 2]),
-        (
-            "… = … rad: the wheel must stand above the ground, 0 < theta < ….",
-            {"theta_start": 3.5},
-            ["theta_start", 3.5, pi],
-        ),
-        (
-            "… = … rad: beyond … rad an angle has too few digits.",
-            {"psi_start": 1e13},
-            ["psi_start", 1e13, 1e12],
-        ),
-        (
-            "J_x, J_y, J_z = …, …, … kg m2: none may exceed the sum of the other two.",
-            {"J_x": 0.8, "J_y": 1.1, "J_z": 2.5},
-            [0.8, 1.1, 2.5],
-        ),
-        ("mu_slide = …: mu_max must be at least as large, and is ….", {"mu_slide": 0.4, "mu_max": 0.3}, [0.4, 0.3]),
-        (
-            "slip_x_start, slip_y_start = …, … m/s: an initial slip needs mu_slide.",
-            {"slip_x_start": 0.5, "slip_y_start": -0.75},
-            [0.5, -0.75],
-        ),
-        (
-            "psi_dot_start, theta_dot_start = …, … rad/s: a guided wheel needs 0 for both.",
-            {"guided": True, "psi_dot_start": 0.5, "theta_dot_start": -0.75},
-            [0.5, -0.75],
-        ),
-        (
-            "psi_dot_guide, theta_dot_guide = …, … rad/s: only the carrier of a guided wheel turns, by co-simulation; "
-            "else they and their derivatives must be 0.",
-            {"psi_dot_guide": 0.5, "theta_dot_guide": -0.75},
-            [0.5, -0.75],
-        ),
-        (
-            "The initial energy or reaction force overflows: m = … kg, J_z = … kg m2, r_0 = … m, g = … m/s2, "
-            "omega_z = … rad/s.",
-            {"m": 1.7e308},
-            [1.7e308, 1.8, 0.3, 9.81, -2],
-        ),
-    ]
-    for text, values, parts in faults:
-        w = library.wheel().initializing(**values)
-        assert w.exitInitializationMode() == ERROR
-        yield text, w.said(), parts
-    text = "The tolerance … is outside […, …]; … is used."
-    for given, used in ((0.1, 1e-4), (1e-16, 1e-13)):
-        yield text, library.wheel().start(START, tolerance=given).said(), [given, 1e-13, 1e-4, used]
+    yield stick, f"t = {START + 1.225520636} s: stick, omega_z is held at zero."
+    yield release, f"t = {START + 1.329817} s: release, omega_z becomes negative."
+    yield started(library, **ROAD).to(START + 0.6).said(), f"t = {START + 0.570827} s: the wheel starts to slide."
 
 
 def values(library: Library) -> Iterator[Case]:
-    """Refused during the run."""
+    """Refused at the end of initialization (test_parameters.py: word for word), or during the run."""
+    yield from ((text, text) for _, text, _ in REFUSALS)
     w = started(library, s=0.03, slope=0.1, F_X=3.0)
-
-    def answer(name: str, value: float) -> str:
+    carrier = "only the carrier of a guided wheel turns, by co-simulation; the value stays 0."
+    for name, value, why in (
+        ("s", -0.5, "it must be at least 0; the value stays 0.03."),
+        ("slope", 1.75, f"it must be less than {pi / 2}; the value stays 0.1."),
+        ("F_X", inf, "a finite number is needed; the value stays 3."),
+        ("mu_slide", 0.4, "whether the wheel can slide is decided at the start; the value stays 0."),
+        ("psi_dot_guide", 0.4, carrier),
+    ):
         assert w.set(**{name: value}) == DISCARD
-        return w.said()
-
-    text = "…: … = …: it must be … …; the value stays …."
-    yield text, answer("s", -0.5), ["fmi2SetReal", "s", -0.5, "at least", 0, 0.03]
-    yield text, answer("slope", 1.75), ["fmi2SetReal", "slope", 1.75, "less than", pi / 2, 0.1]
-    text = "…: … = …: a finite number is needed; the value stays …."
-    yield text, answer("F_X", inf), ["fmi2SetReal", "F_X", "inf", 3]
-    text = "…: … = …: whether the wheel can slide is decided at the start; the value stays …."
-    yield text, answer("mu_slide", 0.4), ["fmi2SetReal", "mu_slide", 0.4, 0]
-    text, carrier = (
-        "…: … = …: only the carrier of a guided wheel turns, by co-simulation; the value stays ….",
-        "psi_dot_guide",
-    )
-    yield text, answer(carrier, 0.4), ["fmi2SetReal", carrier, 0.4, 0]
+        yield w.said(), f"fmi2SetReal: {name} = {value}: {why}"
 
 
 def calls(library: Library) -> Iterator[Case]:
@@ -157,58 +99,60 @@ def calls(library: Library) -> Iterator[Case]:
         assert w.ask(function, *arguments) in (DISCARD, ERROR)
         return w.said()
 
-    text = "…: start … s, stop … s, tolerance …: start must be finite, stop not before it, the tolerance positive."
-    yield text, answer("SetupExperiment", 1, 1e-5, START, 1, 5.5), ["fmi2SetupExperiment", START, 5.5, 1e-5]
+    text = f"start {START} s, stop 5.5 s, tolerance 1e-05: "
+    text += "start must be finite, stop not before it, the tolerance positive."
+    yield answer("SetupExperiment", 1, 1e-5, START, 1, 5.5), f"fmi2SetupExperiment: {text}"
     w.start(START, stop=8.5)
-    text = "… from … s by … s: times must be finite and the step not negative."
-    yield text, answer("DoStep", START, -0.5, 0), ["fmi2DoStep", START, -0.5]
-    text = "… from … s by … s: the step is lost in the rounding of the time."
-    yield text, answer("DoStep", START, 1e-16, 0), ["fmi2DoStep", START, 1e-16]
-    text = "… from … s: the FMU has reached … s."
-    yield text, answer("DoStep", 7.5, 0.1, 0), ["fmi2DoStep", 7.5, START]
-    yield "… to … s: the stop time is … s.", answer("DoStep", START, 2.0, 0), ["fmi2DoStep", 9.25, 8.5]
-    text = "…: no variable of this type has the value reference …."
-    yield text, answer("GetReal", [999], 1, [0]), ["fmi2GetReal", 999]
-    rates, theta, force = "GetRealOutputDerivatives", w.refer("theta"), w.refer("F_X")
-    yield "…: value reference … is not ….", answer(rates, [999], 1, [1], [0]), [f"fmi2{rates}", 999, "a real output"]
-    text = "…: order … of …: only the first derivative is provided."
-    yield text, answer(rates, theta, 1, [2], [0]), [f"fmi2{rates}", 2, "theta"]
-    text, inputs = "…: derivative … = … of …: orders 1 to … and finite values are allowed", "SetRealInputDerivatives"
+    for t, h, text in (
+        (START, -0.5, f"from {START} s by -0.5 s: times must be finite and the step not negative."),
+        (START, 1e-16, f"from {START} s by 1e-16 s: the step is lost in the rounding of the time."),
+        (7.5, 0.1, f"from 7.5 s: the FMU has reached {START} s."),
+        (START, 2.0, "to 9.25 s: the stop time is 8.5 s."),
+    ):
+        yield answer("DoStep", t, h, 0), f"fmi2DoStep {text}"
+    theta, force = w.refer("theta"), w.refer("F_X")
+    text = "no variable of this type has the value reference 999."
+    yield answer("GetReal", [999], 1, [0]), f"fmi2GetReal: {text}"
+    rates, inputs = "GetRealOutputDerivatives", "SetRealInputDerivatives"
+    yield answer(rates, [999], 1, [1], [0]), f"fmi2{rates}: value reference 999 is not a real output."
+    yield answer(rates, theta, 1, [2], [0]), f"fmi2{rates}: order 2 of theta: only the first derivative is provided."
+    text = "derivative 4 = 2.5 of F_X: orders 1 to 3 and finite values are allowed"
     text += ", of a carrier's rate only where it turns: guided, by co-simulation."
-    yield text, answer(inputs, force, 1, [4], [2.5]), [f"fmi2{inputs}", 4, 2.5, "F_X", 3]
-    yield "…: there is no status of kind ….", answer("GetRealStatus", 1, [0]), ["fmi2GetRealStatus", 1]
+    yield answer(inputs, force, 1, [4], [2.5]), f"fmi2{inputs}: {text}"
+    yield answer("GetRealStatus", 1, [0]), "fmi2GetRealStatus: there is no status of kind 1."
     spin = w.by(0.5).get("omega_z")[0]
     assert w.put(M_3=1e300).step(0.5) == ERROR
-    text = "The solver stopped at t = … s, where omega_z = … rad/s, in a step that began with a slip of … m/s: …."
-    parts = [7.75, float(f"{spin:.4g}"), 0, "the step size became too small"]
-    yield text, w.said().partition(": extreme")[0] + ".", parts
+    text = (
+        f"The solver stopped at t = 7.75 s, where omega_z = {spin:.4g} rad/s, in a step that began with a slip of 0 m/s"
+    )
+    yield w.said().partition(": extreme")[0] + ".", f"{text}: the step size became too small."
     w, slopes = library.wheel().initializing(J_x=0.75, J_y=0.75, J_z=1e-12), "GetDirectionalDerivative"
-    text = "…: no valid initial values near … = … for a derivative."
-    yield text, answer(slopes, theta, 1, w.refer("J_x"), 1, [1], [0]), [f"fmi2{slopes}", "J_x", 0.75]
+    text = f"fmi2{slopes}: no valid initial values near J_x = 0.75 for a derivative."
+    yield answer(slopes, theta, 1, w.refer("J_x"), 1, [1], [0]), text
 
 
 def model_exchange(library: Library) -> Iterator[Case]:
     fast = {"theta_start": 1.2, "psi_dot_start": 0.3, "phi_dot_start": -6.0}
     w = loaded(library).new()
     assert w.put(**fast, mu_max=0.01).initialise(None, START) == ERROR
-    text = "At the start the wheel … (N = … N, mu_required = …): the run ends there."
-    yield text, w.said(), [f"{LIMIT} = 0.01", *started(library, **fast).get("lambda_3", "mu_required")]
+    N, mu = started(library, **fast).get("lambda_3", "mu_required")
+    text = f"At the start the wheel {LIMIT} = 0.01 (N = {N} N, mu_required = {mu}): the run ends there."
+    yield w.said(), text
     w = loaded(library).new()
     assert w.put(mu_max=0.5, mu_slide=0.4).initialise(None, START) == ERROR
-    yield "mu_slide = …: model exchange has no states for a slip and needs 0.", w.said(), [0.4]
+    yield w.said(), "mu_slide = 0.4: model exchange has no states for a slip and needs 0."
     w = loaded(library).new().start(START)
     w.decide()
     assert w.setTime(inf) == ERROR
-    yield "…: … s: the time must be finite.", w.said(), ["fmi2SetTime", "inf"]
+    yield w.said(), "fmi2SetTime: inf s: the time must be finite."
     assert w.enterContinuousTimeMode() == OK
     assert w.ask("SetContinuousStates", [0] * 7, 7) == ERROR
-    yield "…: needs an array of … numbers, not of ….", w.said(), ["fmi2SetContinuousStates", 8, 7]
+    yield w.said(), "fmi2SetContinuousStates: needs an array of 8 numbers, not of 7."
     x = w.x()
     x[5] = 1e200
     w.place(START + 0.5, x)
     assert w.ask("GetDerivatives", [0] * 8, 8) == DISCARD
-    text = "…: at t = … s the … are not finite."
-    yield text, w.said(), ["fmi2GetDerivatives", START + 0.5, "derivatives"]
+    yield w.said(), f"fmi2GetDerivatives: at t = {START + 0.5} s the derivatives are not finite."
 
 
 # Places for words alone.
@@ -228,34 +172,34 @@ def pattern(message: str) -> str:
     return "(.+)".join(map(re.escape, message.split("…")))
 
 
-def are(found: tuple[str, ...], parts: list[Part]) -> bool:
-    return all(
-        text == part if isinstance(part, str) else isclose(float(text), part, rel_tol=1e-5)
-        for text, part in zip(found, parts, strict=True)
-    )
-
-
-def swapped(parts: list[Part], i: int, k: int) -> list[Part]:
-    return [parts[{i: k, k: i}.get(place, place)] for place in range(len(parts))]
-
-
 def listed() -> set[str]:
     """Messages of the page with a place for more than the function's name."""
     page = re.sub(r"\n +", " ", (ROOT / "docs" / "messages.md").read_text(encoding="utf-8"))
     return {text for text in re.findall("`([^`]+)`", page) if re.search("….*…|^[^…]+…|^… ", text)}
 
 
+NUMBER = re.compile(r"-?\b\d+(?:\.\d+)?(?:e[-+]?\d+)?\b")
+
+
+def same(text: str, expected: str) -> bool:
+    """Word for word, and in each number."""
+    pairs = zip(NUMBER.findall(text), NUMBER.findall(expected), strict=False)
+    return NUMBER.sub("#", text) == NUMBER.sub("#", expected) and all(
+        isclose(float(a), float(b), rel_tol=1e-5) for a, b in pairs
+    )
+
+
 def test_every_number_of_every_message_stands_at_its_place_and_no_two_could_be_interchanged(library: Library) -> None:
-    seen, words, same = set(), set(), defaultdict(list)
-    for group in (ends, warnings, friction, parameters, values, calls, model_exchange):
-        for message, text, parts in group(library):
-            found = re.fullmatch(pattern(message), text)
-            assert found and are(found.groups(), parts), (text, parts)
-            numbers = [k for k, part in enumerate(parts) if not isinstance(part, str)]
-            for pair in combinations(numbers, 2):
-                same[message, *pair].append(are(found.groups(), swapped(parts, *pair)))
-            seen |= {message}
-            words |= {part for part in parts if isinstance(part, str)}
-    assert not [place for place, cases in same.items() if all(cases)]
-    named = {text for text in listed() if any(re.fullmatch(pattern(text), word) for word in words)}
-    assert listed() == seen | named | WORDS
+    page, alike, words = listed(), dict[str, set[tuple[int, int]]](), set()
+    for group in (ends, warnings, friction, values, calls, model_exchange):
+        for text, expected in group(library):
+            assert same(text, expected), (text, expected)
+            message = max((each for each in page if re.fullmatch(pattern(each), text)), key=len)
+            parts = re.fullmatch(pattern(message), text).groups()
+            pairs = {(i, k) for i, k in combinations(range(len(parts)), 2) if parts[i] == parts[k]}
+            alike[message] = alike.get(message, pairs) & pairs
+            words |= {*parts}
+    assert not [message for message, pairs in alike.items() if pairs]
+    named = {text for text in page if any(re.fullmatch(pattern(text), word) for word in words)}
+    assert page == {*alike} | named | WORDS
+    assert not same("t = 2 s: 1 N", "t = 1 s: 2 N") and not same("1 N", "1 m")

@@ -3,60 +3,37 @@
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, within
+from support.refusals import ABOVE, REFUSALS
 
-from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
-
-NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
-TRIANGLE = "kg m2: none may exceed the sum of the other two."
-STANDS = "the wheel must stand above the ground, 0 < theta < 3.14159."
-# Name, value, the message, and a value next to it that is taken.
-FAULTS: list[tuple[str, float, str, float]] = [
-    ("m", np.nan, f"m = nan: {NUMBER}", 1e-3),
-    ("r_0", np.inf, f"r_0 = inf: {NUMBER}", 0.01),
-    ("r", -0.01, "r = -0.01: it must be at least 0.", 0.0),  # the thin disc
-    ("J_z", 2.5, f"J_x, J_y, J_z = 0.9, 0.9, 2.5 {TRIANGLE}", 1.8 * (1 + 2e-16)),
-    ("g", -9.81, "g = -9.81: it must be at least 0.", 1e-300),
-    ("s", -0.03, "s = -0.03: it must be at least 0.", 0.0),
-    ("psi_start", -np.inf, f"psi_start = -inf: {NUMBER}", 7.0),
-    ("theta_start", -0.1, f"theta_start = -0.1 rad: {STANDS}", 3.1),
-    ("phi_dot_start", np.nan, f"phi_dot_start = nan: {NUMBER}", 0.0),
-    ("formulation", 4, "formulation = 4: it must be at most 3.", 3),
-    ("friction_law", 0, "friction_law = 0: it must be at least 1.", 1),
-    ("omega_s", 0.0, f"omega_s = 0: {ABOVE}", 1e-9),
-    ("method", -1, "method = -1: it must be at least 1.", 1),
-    ("M_2", np.nan, f"M_2 = nan: {NUMBER}", 1.0),
-]
-ALONE = [
-    ("theta_start", 0.0, f"theta_start = 0 rad: {STANDS}", 3.1),
-    ("theta_start", np.pi, f"theta_start = 3.14159265 rad: {STANDS}", 3.1),
-    ("J_x", 3.0, f"J_x, J_y, J_z = 3, 0.9, 1.8 {TRIANGLE}", 0.95),
-    ("slope", np.pi / 2, "slope = 1.57079633 rad: it must be less than 1.5708.", 1.5),
-    ("J_z", 1.8 * (1 + 1e-11), f"J_x, J_y, J_z = 0.9, 0.9, 1.8 {TRIANGLE}", 1.8 * (1 + 2e-16)),
-]
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel, Value
 
 
-def initialize(w: FMU2Wheel, **values: float) -> tuple[int, list[str]]:
-    """The status of fmi2ExitInitializationMode and what was logged."""
+def initialize(w: FMU2Wheel, **values: Value) -> tuple[int, list[str]]:
+    """The status of fmi2ExitInitializationMode and what was logged as errors."""
     status = w.initializing(**values).exitInitializationMode()
     messages = w.take_messages()
-    assert all((m.status, m.category) == (ERROR, "logStatusError") for m in messages)
-    return status, [m.text for m in messages]
+    assert all(m.category in ("logStatusError", "logStatusWarning") for m in messages)
+    return status, [m.text for m in messages if m.status == ERROR]
 
 
 def test_all_faults_are_reported_at_once_one_message_each(wheel):
-    status, logged = initialize(wheel(), **{name: value for name, value, *_ in FAULTS})
-    assert status == ERROR
-    assert sorted(logged) == sorted(text for _, _, text, _ in FAULTS)
+    start, texts = dict[str, Value](), []
+    for values, text, _ in REFUSALS:
+        if not {*start} & {*values}:
+            start |= values
+            texts.append(text)
+    status, logged = initialize(wheel(), **start)
+    assert status == ERROR and len(logged) > 15
+    assert sorted(logged) == sorted(texts)
 
 
-@pytest.mark.parametrize(("name", "value", "text", "near"), FAULTS + ALONE)
-def test_each_fault_is_reported_and_after_a_reset_and_a_correction_the_wheel_runs(wheel, name, value, text, near):
+@pytest.mark.parametrize(("start", "text", "near"), REFUSALS, ids=[str(start) for start, *_ in REFUSALS])
+def test_each_fault_is_reported_and_after_a_reset_and_a_correction_the_wheel_runs(wheel, start, text, near):
     w = wheel()
-    status, logged = initialize(w, **{name: value})
-    assert status == ERROR and text in logged
+    assert initialize(w, **start) == (ERROR, [text])
     assert w.get_one("theta")[0] == ERROR and "theta" in w.said()
     assert w.reset() == OK
-    assert initialize(w, **{name: near}) == (OK, [])
+    assert initialize(w, **near) == (OK, [])
     assert w.reset() == OK
     assert w.start().run([1.0]) == wheel().start().run([1.0])
 
@@ -125,10 +102,3 @@ def test_experiments_that_make_no_sense_are_refused_and_an_infinite_stop_time_is
     assert w.setupExperiment(1e-8, 0.0, 0.0) == OK
     endless = wheel().start(stop=np.inf).by(2.0)
     assert wheel().back(endless.serialized()).bits() == endless.bits()
-
-
-def test_sound_values_whose_products_are_no_numbers_are_refused_with_a_message(wheel):
-    status, logged = initialize(wheel(), m=1.7e308)
-    assert status == ERROR
-    assert [text.split(":")[0] for text in logged] == ["The initial energy or reaction force overflows"]
-    assert wheel().start(m=1e100, J_x=1e100, J_y=1e100, J_z=1.5e100).step(0.1) == OK

@@ -18,14 +18,11 @@ FAULTS = {
     "a decimal comma": (
         "the decimal mark is a point",
         "run v=18,5",
-        "run m=12,5kg",
-        "run stop_time=2,5",
         "study --vary theta_start=1,1:1,2:3",
         "study --vary s=0,01,0,02",
         "study --vary s=0,0.1 --set m=12,5",
         "study --vary s=0,0.1 --stop-time 2,5",
         "example car v=18,5",
-        "example suspended M_drive=0,5",
         "example balance k_theta=2,5",
         "view motion.csv --r_0 0,3 --r 0,05",
         "view motion.csv --box 1,5 1 1",
@@ -34,40 +31,30 @@ FAULTS = {
         "is not a number",
         "run v=fast",
         "run m=1e999",
-        "run s=",
         "study --vary s=0,1e999",
         "study --vary s=0,,1",
         "study --vary s=0,0.1 --set m=heavy",
         "study --vary s=0,0.1 --interval soon",
         "example car v=fast",
-        "example suspended stop=1e999",
         "view motion.csv --slope steep",
     ),
     "not one of the words, or a part of a whole number": (
         "is not one of",
         "run formulation=2.7",
-        "run keep_contact=0.3",
-        "run method=euler",
         "study --vary formulation=1:3:5",
         "study --vary s=0,0.1 --set formulation=2.7",
-        "study --vary s=0,0.1 --set keep_contact=0.3",
         "study --vary keep_contact=true,maybe",
-        "study --vary s=0,0.1 --set method=euler",
         "example car path=1.5",
         "example suspended follow=0.5",
-        "example car exchange=now",
         "example car manoeuvre=loop",
     ),
     "beyond a limit": (
         "must be",
-        "run m=-5",
         "run theta_start=200deg",
-        "run slope=95deg",
         "study --vary s=-1:1:3",
         "study --vary s=0,0.1 --set m=-5",
         "example car s=-1",
         "example car slope=95deg",
-        "example suspended mu_max=-1",
         "view motion.csv --slope 95deg",
         "view motion.csv --r_0 -1 --r 0",
         "view motion.csv --box 0 1 1",
@@ -79,7 +66,6 @@ FAULTS = {
         "run coni",
         "run wheel=coni",
         "run body=tours",
-        "study fate",
         "study --vary mu=0.4",
         "study --vary brake=60",
         "study --vary s=0,0.1 --set masss=1",
@@ -104,14 +90,11 @@ FAULTS = {
         "study --vary s=0,0.1 --out a.zarr --out b.zarr",
         "study --vary s=0,0.1 --stop-time 1 --stop-time 2",
         "example car v=3 v=4",
-        "example car manoeuvre=step manoeuvre=lane",
-        "example suspended exchange=held exchange=rollback",
         "view motion.csv --title a --title b",
     ),
     "an option that is cut short": (
         "unrecognized arguments",
         "study --vary s=0,0.1 --over",
-        "view motion.csv --lab a",
         "report speed --pub",
     ),
     "neither a name nor a value": (
@@ -124,7 +107,15 @@ FAULTS = {
     "a file that is read": ("is read", "view motion.csv --output motion.csv", "view motion.csv -o ./motion.csv"),
     "a file of somebody else": ("is not of this command", "view motion.csv --output thesis.html"),
 }
+# Of ./scripts/run, each with words of its own.
+OF_RUN = {"theta=1": "theta_start", "slope=-8deg": "slope_direction", "s": "neither name=value nor a preset"}
+OF_RUN |= {"s=0": "above 0", "m=3m": "kg or g", "v=3furlong": "it takes no unit but m/s or km/h", "hopp": "hoop"}
+OF_RUN |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)", "friction_law=0": "1 (exact), 2 ("}
+OF_RUN |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
+OF_RUN |= {"body=ball": "There is no body", "v=3 phi_dot_start=-2": "phi_dot_start follows from v"}
+OF_RUN |= {"body=torus m=12kg J_z=1": "J_z follows from m, r_0 and r with body=torus"}
 TYPED = [(words, line) for words, *lines in FAULTS.values() for line in lines]
+TYPED += [(words, f"run {line}") for line, words in OF_RUN.items()]
 
 
 def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -162,22 +153,28 @@ def test_what_is_meant_is_taken(folder, line) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").iterdir()))
-def test_a_command_is_the_same_through_a_link_and_whatever_the_environment(tmp_path: Path, name: str) -> None:
-    command = ROOT / "scripts" / name
+def test_the_doors_differ_in_their_names_alone() -> None:
+    texts = {path.name: path.read_text() for path in (ROOT / "scripts").iterdir()}
+    assert {text.replace(f" {name} ", " NAME ") for name, text in texts.items()} == {
+        texts["run"].replace(" run ", " NAME ")
+    }
+
+
+def test_a_command_is_the_same_through_a_link_and_whatever_the_environment(tmp_path: Path) -> None:
+    command = ROOT / "scripts" / "run"
     (tmp_path / "link").symlink_to(command)
     (tmp_path / "scripts").mkdir()
-    (tmp_path / "scripts" / name).symlink_to("../link")
+    (tmp_path / "scripts" / "run").symlink_to("../link")
     unusual = os.environ | {"CDPATH": f".:{tmp_path}:{ROOT}", "PYTHONOPTIMIZE": "2"}
     done = [
         subprocess.run([path, "--help"], cwd=cwd, env=env, capture_output=True, text=True, check=True)
         for path, cwd, env in (
             (command, ROOT, dict(os.environ)),
-            (f"scripts/{name}", ROOT, unusual),
-            (f"scripts/{name}", tmp_path, unusual),
+            ("scripts/run", ROOT, unusual),
+            ("scripts/run", tmp_path, unusual),
         )
     ]
-    assert {(one.stdout, one.stderr) for one in done} == {(done[0].stdout, "")} and len(done[0].stdout) > 60
+    assert {(one.stdout, one.stderr) for one in done} == {(done[0].stdout, "")} and "phi_dot_start" in done[0].stdout
 
 
 GOOD = "theta_start,phi_dot_start\n75deg,-2\n1.2,0\n"
