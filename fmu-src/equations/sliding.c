@@ -148,25 +148,32 @@ static double zero_of_turning(const WheelParameters* w, const Body* b, double lo
  *   it falls: a slip that turns a little comes back;
  *   growth >= 0, to rounding: the slip grows;
  *   room and N are positive;
- * or 180 parts of the circle are searched: NaN. */
+ * or all parts of the circle are searched: NaN. */
+static double search_direction(const WheelParameters* w, const Body* b, double against, double least, int parts) {
+  const double part = 2 * 3.141592653589793 / parts;
+  for (int i = 0; i < parts; ++i) {
+    double lo = against + part * ((i % 2 ? -(i + 1) / 2 : i / 2) - 0.5), hi = lo + part;
+    if (!(turning(w, b, lo) > 0 && turning(w, b, hi) <= 0)) continue;
+    double chi = zero_of_turning(w, b, lo, hi);
+    WheelSlip slip = slip_of(w, b, chi);
+    if (slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0) return chi;
+  }
+  return NAN;
+}
+
+/* In ever smaller parts, since a zero where the turning rises may lie close by; not so without friction. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
-  const int parts = 180;
   static const Action none = {.brake = 0};
-  const double part = 2 * 3.141592653589793 / parts, rounding = 1e-9;
+  const double rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
   Body b = body_of(scene, reduced, scene->guided);
   Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
-  double least = -rounding * (fabs(free.u_x) + fabs(free.u_y));
-  for (int i = 0; i < parts; ++i) {
-    double lo = against + part * ((i % 2 ? -(i + 1) / 2 : i / 2) - 0.5), hi = lo + part;
-    if (!(turning(w, &b, lo) > 0 && turning(w, &b, hi) <= 0)) continue;
-    double chi = zero_of_turning(w, &b, lo, hi);
-    WheelSlip slip = slip_of(w, &b, chi);
-    if (slip.growth >= least && slip.room > WHEEL_LEAST_ROOM && slip.N > 0) return chi;
-  }
-  return NAN;
+  double least = -rounding * (fabs(free.u_x) + fabs(free.u_y)), chi = NAN;
+  const int finest = b.mu > 0 ? 18000 : 180;
+  for (int parts = 180; isnan(chi) && parts <= finest; parts *= 10) chi = search_direction(w, &b, against, least, parts);
+  return chi;
 }
 
 static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
