@@ -172,7 +172,8 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
   double least = -rounding * (fabs(free.u_x) + fabs(free.u_y)), chi = NAN;
   const int finest = b.mu > 0 ? 18000 : 180;
-  for (int parts = 180; isnan(chi) && parts <= finest; parts *= 10) chi = search_direction(w, &b, against, least, parts);
+  for (int parts = 180; isnan(chi) && parts <= finest; parts *= 10)
+    chi = search_direction(w, &b, against, least, parts);
   return chi;
 }
 
