@@ -9,11 +9,10 @@ from support.bounds import absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import OK
 from wheelfmu.truth.exchange import loaded
-from wheelfmu.truth.kept import kept
 from wheelfmu.truth.measure import instants, instants_error
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.reference import Start, Wheel, solve
 from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.scenes import Scene
 
 EVENTS = read_table("paper_friction_events")
 
@@ -66,7 +65,7 @@ def late_releases(library: Library, tolerance: float | None, s: float = 0.03) ->
 
 
 def test_the_ever_weaker_releases_of_a_long_run_are_those_of_the_independent_reference(library: Library) -> None:
-    want = kept(("30 s of friction",), lambda: solve(Wheel(s=0.03), Start(), [0.0, 30.0], rtol=1e-11))
+    want = Scene({"s": 0.03}).solved([0.0, 30.0], rtol=1e-11)
     modes, energy = late_releases(library, None)
     assert modes == [mode for _, mode in want.events[1:]]
     assert len(modes) == 150

@@ -7,7 +7,7 @@ psi_dot v_O, so mu_required = |psi_dot| v_O / g.
 """
 
 from dataclasses import replace
-from math import cos, pi, tan
+from math import pi, tan
 
 import numpy as np
 import pytest
@@ -15,11 +15,11 @@ from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import ERROR, OK
 from wheelfmu.truth.cases import random_scene
-from wheelfmu.truth.closed_forms import circle_spin, rolling_inertia
+from wheelfmu.truth.closed_forms import circle, rolling_inertia
 from wheelfmu.truth.exchange import INDICATORS, exchange, loaded, no_inputs
 from wheelfmu.truth.exchange import Run as ExchangeRun
 from wheelfmu.truth.motion import Library, start_values
-from wheelfmu.truth.reference import Solution, Start, Wheel, solve
+from wheelfmu.truth.reference import Solution, Wheel, solve
 from wheelfmu.truth.schedule import Schedule
 
 PAPER = Wheel()
@@ -60,8 +60,7 @@ def test_a_slippery_road_ends_the_run_at_its_own_coefficient_however_small(libra
 
 @pytest.mark.parametrize(("theta", "psi_dot"), [(1.2, 1.5), (1.0, -2.0), (2.1, 3.0)])
 def test_a_steady_circle_needs_its_centripetal_acceleration_over_g(library: Library, theta: float, psi_dot: float):
-    omega_z = circle_spin(PAPER, theta, psi_dot)
-    start = start_values(PAPER, Start(theta=theta, psi_dot=psi_dot, phi_dot=omega_z - psi_dot * cos(theta)))
+    start = start_values(PAPER, circle(PAPER, theta, psi_dot))
     at = library.simulate([0.0], **start)
     speed = float(np.hypot(at["X_O_dot"], at["Y_O_dot"])[0])
     needed = abs(psi_dot) * speed / PAPER.g
@@ -80,8 +79,9 @@ def margin(mu: float, run: Solution) -> np.ndarray:
 def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) -> None:
     """The limit is that needed at a random instant; the reference's margin changes sign around the FMU's."""
     random, lost, instant = np.random.default_rng(31), 0, 1e-8
-    for k in range(80):
-        (wheel, start), choice = random_scene(random), random.uniform(0.05, 1.0)
+    for k in range(40):
+        scene, choice = random_scene(random), random.uniform(0.05, 1.0)
+        wheel, start = scene.wheel, scene.motion
         if k % 4 == 0:
             wheel = replace(PAPER, r=wheel.r)  # free and symmetric: it can be unfolded
         force = {name: tuple(random.uniform(-9, 9, 2)) for name in ("F_X", "F_Y", "M_1", "M_3")}
@@ -103,7 +103,7 @@ def test_instants_in_random_scenes_are_those_of_the_reference(library: Library) 
             continue
         assert (want[:-2] > 0).all() and want[-2] < 0 and want[-1] < 0, (k, mu, end, want[-4:] / weight)
         lost += 1
-    assert lost >= 30, lost
+    assert lost >= 15, lost
 
 
 def first_peak(library: Library, start: dict[str, float]) -> tuple[float, float] | None:

@@ -15,7 +15,8 @@ from wheelfmu.fmu.driver import HEADLINE
 from wheelfmu.truth.closed_forms import rolling_inertia
 from wheelfmu.truth.errors import range_error
 from wheelfmu.truth.motion import Library, Run, start_values
-from wheelfmu.truth.reference import Start, Wheel, solve
+from wheelfmu.truth.reference import Start, Wheel
+from wheelfmu.truth.scenes import Scene
 from wheelfmu.truth.schedule import Schedule
 
 TIMES = np.linspace(0, 2, 41)
@@ -62,7 +63,8 @@ def test_a_ground_that_pulls_costs_no_accuracy(library: Library, tolerance: floa
 def test_the_reference_goes_the_same_way(library: Library, seed: int) -> None:
     start = violent(seed)
     got = motion(library, start, 1e-11)
-    want, other = (solve(WHEEL, start, TIMES[: len(got.t) - 1], rtol=1e-12, pulled=share) for share in (0, 1))
+    scene = Scene({**start_values(WHEEL, start), "keep_contact": True})
+    want, other = (scene.solved(TIMES[: len(got.t) - 1], rtol=1e-12, pulled=share) for share in (0, 1))
     within(distance(got, want), 1e-10, "distance from the reference / range")
     assert pulled(got) == (seed != 3)
     if pulled(got):

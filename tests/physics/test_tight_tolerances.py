@@ -13,7 +13,7 @@ from support.bounds import EPSILON, beyond, within
 from wheelfmu.fmu.driver import OK
 from wheelfmu.truth.cases import random_scene
 from wheelfmu.truth.errors import range_errors
-from wheelfmu.truth.motion import Library, start_values
+from wheelfmu.truth.motion import Library
 from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.scenes import SCENES
 from wheelfmu.truth.schedule import Schedule
@@ -46,8 +46,7 @@ def test_every_scene_runs_to_its_end_by_every_method_at_every_tolerance(library,
 def test_random_wheels_with_friction_run_to_their_end_at_the_tightest_tolerances(library, method: int) -> None:
     random = np.random.default_rng(57)
     for _ in range(25):
-        wheel, start = random_scene(random)
-        values = {**start_values(wheel, start), "s": 10 ** random.uniform(-4, -1), "keep_contact": True}
+        values = {**random_scene(random).start, "s": 10 ** random.uniform(-4, -1)}
         values |= {"formulation": int(random.choice([2, 3])), "method": method}
         assert stopped(library, [0.0, 2.0, 4.0], float(10 ** -random.uniform(11, 13)), **values) == []
 

@@ -5,7 +5,8 @@ from math import pi
 
 import numpy as np
 
-from wheelfmu.truth.motion import Library
+from wheelfmu.truth.errors import instants_error, kind_errors
+from wheelfmu.truth.motion import Library, start_values
 from wheelfmu.truth.reference import Start, Wheel
 from wheelfmu.truth.scenes import SCENES, Scene
 
@@ -14,38 +15,23 @@ NAMES += ("general inertia, friction", "light friction", "heavy friction", "heav
 NAMES += ("past upright", "pushed", "pushed, general inertia", "braked")
 # The ground may pull in all of them.
 CASES = {name: replace(SCENES[name], start={**SCENES[name].start, "keep_contact": True}) for name in NAMES}
-KINDS = [
-    ("X_O", "Y_O", "Z_O"),
-    ("psi", "theta", "phi"),
-    ("X_O_dot", "Y_O_dot", "Z_O_dot", "slip_x", "slip_y"),
-    ("psi_dot", "theta_dot", "phi_dot", "omega_z"),
-    ("lambda_1", "lambda_2", "lambda_3", "lambda_x", "lambda_y"),
-    ("E",),
-]
 
 
 def error(library: Library, scene: Scene, tolerance: float | None = None, least: float = 0.0, **changes) -> float:
     """Largest error of an output or the energy over 51 instants, over the largest value of its kind or least."""
     want = scene.solved()
     got = library.simulate(want.t, tolerance, scene.inputs, **{**scene.start, **changes})
-    errors = []
-    for kind in KINDS:
-        size = max(least, *(float(np.abs(want[column]).max()) for column in kind))
-        errors += [float(np.abs(got[column] - want[column]).max()) / size for column in kind]
-    return max(errors)
+    return max(kind_errors(got, want, least).values())
 
 
 def transitions_gap(library: Library, scene: Scene, s: float) -> float:
     """Largest difference of the instants, s; infinite if the transitions differ."""
-    want = scene.solved().events[1:]
-    got = library.simulate([0.0, scene.duration], None, scene.inputs, **{**scene.start, "s": s}).events
-    if [mode for _, mode in got] != [mode for _, mode in want]:
-        return np.inf
-    return max((abs(a - b) for (a, _), (b, _) in zip(got, want, strict=True)), default=0.0)
+    run = library.simulate([0.0, scene.duration], None, scene.inputs, **{**scene.start, "s": s})
+    return instants_error(run.events, scene.solved().events[1:])
 
 
-def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
-    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s."""
+def random_scene(random: np.random.Generator, duration: float = 1.0) -> Scene:
+    """Light to heavy friction or none, any inertia, any slope to 50 degrees, rates of a few rad/s; the ground pulls."""
     a, b, c = random.uniform(0.2, 0.9, 3)
     wheel = Wheel(
         r=random.uniform(0, 0.1), J_x=b + c, J_y=a + c, J_z=a + b,
@@ -54,4 +40,5 @@ def random_scene(random: np.random.Generator) -> tuple[Wheel, Start]:
     )  # fmt: skip
     motion = dict(zip(("psi_dot", "theta_dot", "phi_dot"), random.normal(0, 2, 3), strict=True))
     motion |= dict(zip(("psi", "phi"), random.uniform(-pi, pi, 2), strict=True))
-    return wheel, Start(theta=random.uniform(0.8, 2.3), **motion)
+    start = start_values(wheel, Start(theta=random.uniform(0.8, 2.3), **motion))
+    return Scene({**{name: float(value) for name, value in start.items()}, "keep_contact": True}, duration)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from wheelfmu.truth.reference import Wheel
+from wheelfmu.truth.reference import Start, Wheel
 
 Array = NDArray[np.float64]
 
@@ -76,6 +76,11 @@ def circle_spin(wheel: Wheel, theta: float, psi_dot: float) -> float:
     rho, eta, Z = wheel.r_0 + wheel.r * s, wheel.r * c, wheel.r_0 * s + wheel.r
     turning = (wheel.J_x * c + wheel.m * eta * Z) * psi_dot**2 * s
     return (turning - wheel.m * wheel.g * wheel.r_0 * c) / ((wheel.J_z * s + wheel.m * rho * Z) * psi_dot)
+
+
+def circle(wheel: Wheel, theta: float, psi_dot: float) -> Start:
+    """The start of the steady circle."""
+    return Start(theta=theta, psi_dot=psi_dot, phi_dot=circle_spin(wheel, theta, psi_dot) - psi_dot * cos(theta))
 
 
 def fall_inertia(wheel: Wheel, theta: float) -> float:

@@ -3,13 +3,14 @@
 `judged`: the wheel with whose constants the closed form is written (support/closed_forms.py).
 """
 
-from math import cos, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from wheelfmu.truth.closed_forms import (
+    circle,
     circle_spin,
     critical_spin,
     fall_normal_force,
@@ -58,10 +59,9 @@ def lift_off_error(library: Library, formulation: int, shift: float) -> float:
 
 def circle_error(library: Library, disc: Wheel, judged: Wheel, formulation: int, psi_dot: float, theta: float) -> float:
     """theta, the rates and the circle of O over 5 s from the steady circle of `judged`."""
-    omega_z = circle_spin(judged, theta, psi_dot)
-    begin = Start(theta=theta, psi_dot=psi_dot, phi_dot=omega_z - psi_dot * cos(theta))
-    times = np.linspace(0, 5, 101)
-    run = library.simulate(times, 1e-11, formulation=formulation, **start_values(disc, begin))
+    omega_z, times = circle_spin(judged, theta, psi_dot), np.linspace(0, 5, 101)
+    start = start_values(disc, circle(judged, theta, psi_dot))
+    run = library.simulate(times, 1e-11, formulation=formulation, **start)
     speed = np.hypot(run["X_O_dot"], run["Y_O_dot"])
     wander = [run["theta"] - theta, run["psi_dot"] - psi_dot, run["omega_z"] - omega_z, speed - speed[0]]
     wander.append(run["psi"] - run["psi"][0] - psi_dot * times)

@@ -19,7 +19,7 @@ from wheelfmu.fmu.driver import DISCARD, HEADLINE, WARNING, Values
 from wheelfmu.truth.closed_forms import linear_integrals
 from wheelfmu.truth.errors import range_error
 from wheelfmu.truth.motion import Library, Run, run
-from wheelfmu.truth.reference import solve
+from wheelfmu.truth.reference import Solution
 
 from .sweep import Case
 
@@ -75,15 +75,12 @@ def reference_rows(case: Case) -> np.ndarray:
     return np.linspace(0, case.samples, 21).astype(int)
 
 
-def reference_table(case: Case) -> dict[str, np.ndarray]:
-    keep = bool(case.start.get("keep_contact", False))
-    times = case.times[reference_rows(case)] - case.start_time
-    flat = None if keep else 1e-7
-    found = solve(case.wheel, case.motion, times, rtol=1e-12, keep_contact=keep, flat=flat)
-    return {**found.columns, "t": found.t}
+def reference_table(case: Case) -> Solution:
+    flat = None if case.start.get("keep_contact", False) else 1e-7
+    return case.solved(case.times[reference_rows(case)] - case.start_time, rtol=1e-12, flat=flat)
 
 
-def reference(case: Case, run: Run, table: dict[str, np.ndarray]) -> float:
+def reference(case: Case, run: Run, table: Solution) -> float:
     rows = reference_rows(case)
     rows = rows[rows < len(run["t"]) - (run.end is not None)]  # the ending has its own judge
     wheel = case.wheel
@@ -175,7 +172,7 @@ def outcome_of(run: Run) -> str:
     return "finishes" if run.status <= WARNING else ("discarded" if run.status == DISCARD else "fails")
 
 
-def judge(case: Case, tolerance: float, done: Run, table: dict | None) -> Verdict:
+def judge(case: Case, tolerance: float, done: Run, table: Solution | None) -> Verdict:
     outcome = outcome_of(done)
     verdict = Verdict(tolerance, outcome, seconds=done.seconds, claimed=tolerance <= case.loosest)
     if outcome != case.expect.kind:

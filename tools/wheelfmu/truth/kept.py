@@ -1,35 +1,44 @@
-"""What the independent reference has computed is kept in build/reference: it does not depend on the core."""
+"""What the independent reference has computed is kept in the user's cache: it does not depend on the core.
+
+One folder for each state of the reference's sources; the newest few stay.
+"""
 
 import hashlib
+import os
 import pickle
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
-from wheelfmu.fmu.paths import ROOT
-
-FOLDER = ROOT / "build" / "reference"
+FOLDERS = 4
 
 
 @cache
-def sources() -> bytes:
-    """All that the reference's results follow from, besides the question."""
-    here = Path(__file__).parent
+def folder() -> Path:
+    """Of all that the reference's results follow from, besides the question."""
+    here, usual = Path(__file__).parent, os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     files = [*sorted((here / "reference").glob("*.py")), here / "scenes.py", here / "schedule.py"]
-    versions = "".join(version(name) for name in ("numpy", "scipy"))
-    return b"".join(file.read_bytes() for file in files) + versions.encode()
+    sources = (
+        b"".join(file.read_bytes() for file in files) + repr([version(name) for name in ("numpy", "scipy")]).encode()
+    )
+    found = Path(usual) / "wheel.fmu" / "reference" / hashlib.sha256(sources).hexdigest()[:16]
+    if not found.exists():
+        found.mkdir(parents=True, exist_ok=True)
+        for old in sorted(found.parent.iterdir(), key=os.path.getmtime)[:-FOLDERS]:
+            rmtree(old, ignore_errors=True)
+    return found
 
 
 def kept(question: tuple, answer: Callable[[], Any]) -> Any:
     """The answer of the same question under the same sources, or a new one. `question` holds all that it depends on."""
-    file = FOLDER / hashlib.sha256(sources() + repr(question).encode()).hexdigest()
+    file = folder() / hashlib.sha256(repr(question).encode()).hexdigest()[:32]
     if file.exists():
         return pickle.loads(file.read_bytes())
     found = answer()
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    written = file.with_suffix(f".{id(found)}")
+    written = file.with_suffix(f".{os.getpid()}")
     written.write_bytes(pickle.dumps(found))
     written.replace(file)  # at once: other processes read it
     return found

@@ -5,7 +5,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.truth.errors import over_range
+from wheelfmu.truth.errors import instants_error, over_range
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.reference import Solution, solve
 from wheelfmu.truth.scenes import Scene
@@ -47,7 +47,4 @@ def errors(name: str, found: Run | Solution) -> tuple[float, float | None]:
     error = over_range(np.column_stack([found[output][1:] for output in OUTPUTS]), want)
     if not known:
         return error, None
-    events = [event for event in found.events if event[0] > 0]
-    if [mode for _, mode in events] != [mode for _, mode in known]:
-        return error, np.inf
-    return error, float(max(abs(a - b) for (a, _), (b, _) in zip(events, known, strict=True)))
+    return error, instants_error([event for event in found.events if event[0] > 0], known)

@@ -33,9 +33,12 @@ def motion_of(start: Values) -> Start:
 
 
 class Started:
-    """What begins with `start`, changes of the FMU's start values, also as the reference has it."""
+    """What begins with `start`, changes of the FMU's start values, and lasts for `duration`, s, under inputs; also as
+    the reference has it, and solves it."""
 
     start: Values
+    duration: float
+    inputs: Schedule
 
     @property
     def wheel(self) -> Wheel:
@@ -44,15 +47,6 @@ class Started:
     @property
     def motion(self) -> Start:
         return motion_of(self.start)
-
-
-@dataclass(frozen=True)
-class Scene(Started):
-    """How long, s, and under which inputs."""
-
-    start: Values = field(default_factory=dict)
-    duration: float = 10.0
-    inputs: Schedule = Schedule()
 
     @property
     def road(self) -> Road:
@@ -65,9 +59,16 @@ class Scene(Started):
             how["omega_s"] = float(self.start["omega_s"])
         how = {"keep_contact": bool(self.start.get("keep_contact", False)), **how}
         asked = [float(t) for t in np.ravel(np.linspace(0, self.duration, 51) if times is None else times)]
-        question = ("scene", sorted(self.start.items()), self.inputs.pieces, asked, sorted(how.items()))
-        given = self.wheel, self.motion, asked, self.inputs.for_reference(), self.road
-        return kept(question, lambda: solve(*given, **how))
+        wheel, motion, road = self.wheel, self.motion, self.road
+        question = (wheel, motion, asked, self.inputs.pieces, road, sorted(how.items()))
+        return kept(question, lambda: solve(wheel, motion, asked, self.inputs.for_reference(), road, **how))
+
+
+@dataclass(frozen=True)
+class Scene(Started):
+    start: Values = field(default_factory=dict)
+    duration: float = 10.0
+    inputs: Schedule = Schedule()
 
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}

@@ -4,7 +4,6 @@ What they found, the same by wheel.fmu and by the independent reference, and how
 """
 
 from dataclasses import dataclass
-from functools import cache
 from math import pi, sin
 from pathlib import Path
 
@@ -14,7 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from wheelfmu.truth.motion import Library, Run, start_values
-from wheelfmu.truth.reference import Start, Wheel, solve
+from wheelfmu.truth.reference import Start, Wheel
+from wheelfmu.truth.scenes import Scene
 
 Array = NDArray[np.float64]
 # Modelica's default world has 9.80665 m/s2 as its gravity.
@@ -60,10 +60,9 @@ def modelica(library: Library, tolerance: float | None = None) -> Run:
     return motion(library, MODELICA, MODELICA_START, read("modelica_wheel")["time"], tolerance)
 
 
-@cache
 def modelica_reference() -> dict[str, Array]:
     """The same by truth/reference."""
-    return solve(MODELICA, MODELICA_START, read("modelica_wheel")["time"]).columns
+    return Scene(start_values(MODELICA, MODELICA_START)).solved(read("modelica_wheel")["time"]).columns
 
 
 def apart(table: dict[str, Array], other: Run | dict[str, Array]) -> float:

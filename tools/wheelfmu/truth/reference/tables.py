@@ -28,6 +28,12 @@ def read_table(name: str) -> dict[str, NDArray[np.float64]]:
     return {column: table[column] for column in table.dtype.names or ()}
 
 
+def read_transitions() -> list[tuple[float, int]]:
+    """Instant, and mode after it; the first is the start."""
+    table = read_table("paper_friction_events")
+    return list(zip(table["t"].tolist(), table["mode"].astype(int).tolist(), strict=True))
+
+
 def solution(scene: str) -> Solution:
     return solve(SCENES[scene], Start(), np.linspace(0, 10, 101), rtol=TOLERANCE)
 
