@@ -36,7 +36,7 @@ typedef struct AxleLaw {
 } AxleLaw;
 
 /* (load, inertia, geometry, omega) => k, moment */
-static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Frame* f) {
+INLINED Drift drift_of(const WheelScene* scene, const Inertia* I, const Frame* f) {
   const WheelParameters* w = &scene->wheel;
   double F_1, F_h, F_Z = scene->load.F[2]; /* {F} of (15): along e1, across it, and across the road */
   double b_1 = f->omega_1 * (w->r_0 * f->omega_2 - f->eta * f->phi_dot);
@@ -52,7 +52,7 @@ static inline Drift drift_of(const WheelScene* scene, const Inertia* I, const Fr
 }
 
 /* (inertia, geometry, drift) => the system, N for tau = 0 */
-static inline System system_of(const WheelParameters* w, const Inertia* I, const Frame* f, const Drift* d) {
+INLINED System system_of(const WheelParameters* w, const Inertia* I, const Frame* f, const Drift* d) {
   double rho_2 = w->m * (f->rho * f->rho), eta_2 = w->m * (f->eta * f->eta);
   double inverse = 1.0 / (I->I_11 + (rho_2 + eta_2)); /* 1 / a_11 */
   double h_1 = d->M.M_1 - f->rho * d->k_3 + f->eta * d->k_2;
@@ -103,7 +103,7 @@ static inline Accelerations solve(const System* s, const AxleLaw* law) {
 }
 
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero, in the law too. */
-static inline Accelerations move(const System* s, AxleLaw law) {
+INLINED Accelerations move(const System* s, AxleLaw law) {
   Accelerations a = solve(s, &law);
   if (a.N > 0 || law.branch_kept || law.lever == 0) return a;
   law.lever = 0;
@@ -111,7 +111,7 @@ static inline Accelerations move(const System* s, AxleLaw law) {
 }
 
 /* On a wheel carrier spin is all that is left to move; N from the height of O, r_0 sin(theta) + r. */
-static inline Accelerations move_guided(const WheelScene* scene, const Frame* f, const Drift* d, AxleLaw law) {
+INLINED Accelerations move_guided(const WheelScene* scene, const Frame* f, const Drift* d, AxleLaw law) {
   const WheelParameters* w = &scene->wheel;
   double omega_1_dot = scene->load.guide[1], omega_2_dot = guided_rate(f, scene->load.guide[0]);
   double rise = w->r_0 * (f->cos_theta * omega_1_dot - f->sin_theta * (f->omega_1 * f->omega_1)); /* m/s2 */
@@ -128,35 +128,8 @@ static inline Accelerations move_guided(const WheelScene* scene, const Frame* f,
   };
 }
 
-/* One state under a load, ready for a law of friction. Inlined as the frame is. */
-typedef struct Instant {
-  Frame frame;
-  Drift drift;
-  System system; /* unless guided */
-} Instant;
-
-/* (scene, y) => geometry, drift, system */
-INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
-  const WheelParameters* w = &scene->wheel;
-  Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
-  Instant now = {.frame = frame_of(w, y)};
-  now.drift = drift_of(scene, &inertia, &now.frame);
-  if (!guided) now.system = system_of(w, &inertia, &now.frame, &now.drift);
-  return now;
-}
-
-/* (instant, omega_dot) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
-static inline void reaction_of(const WheelParameters* w, const Instant* now, const Accelerations* a, double lambda[3]) {
-  const Frame* f = &now->frame;
-  double R_1 = now->drift.k_1 + w->m * (f->eta * a->omega_2_dot - f->rho * a->omega_3_dot);
-  double R_2 = now->drift.k_2 - w->m * (f->eta * a->omega_1_dot);
-  double R_3 = now->drift.k_3 + w->m * (f->rho * a->omega_1_dot);
-  double R_h = f->cos_theta * R_2 - f->sin_theta * R_3; /* horizontal, across e1 */
-  to_fixed(f, R_1, R_h, &lambda[0], &lambda[1]);
-}
-
 /* (friction, brake, omega_3) => law about the axle */
-static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
+INLINED AxleLaw law_of(const WheelScene* scene, double omega_3) {
   double kappa = kappa_of(&scene->friction, omega_3);
   return (AxleLaw){
       .held = scene->friction.kind == WHEEL_HELD,
@@ -164,6 +137,36 @@ static inline AxleLaw law_of(const WheelScene* scene, double omega_3) {
       .lever = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
       .brake = scene->load.brake * kappa,
   };
+}
+
+/* One state under the scene's loads and laws. */
+typedef struct Instant {
+  Frame frame;
+  Drift drift;
+  Accelerations accelerations;
+} Instant;
+
+/* (scene, y) => geometry, drift, accelerations; inlined as the frame is */
+INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
+  const WheelParameters* w = &scene->wheel;
+  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
+  Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
+  Frame frame = frame_of(w, y);
+  Drift drift = drift_of(scene, &inertia, &frame);
+  if (guided) return (Instant){frame, drift, move_guided(scene, &frame, &drift, law)};
+  System system = system_of(w, &inertia, &frame, &drift);
+  return (Instant){frame, drift, move(&system, law)};
+}
+
+/* (instant) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
+static inline void reaction_of(const WheelParameters* w, const Instant* now, double lambda[3]) {
+  const Frame* f = &now->frame;
+  const Accelerations* a = &now->accelerations;
+  double R_1 = now->drift.k_1 + w->m * (f->eta * a->omega_2_dot - f->rho * a->omega_3_dot);
+  double R_2 = now->drift.k_2 - w->m * (f->eta * a->omega_1_dot);
+  double R_3 = now->drift.k_3 + w->m * (f->rho * a->omega_1_dot);
+  double R_h = f->cos_theta * R_2 - f->sin_theta * R_3; /* horizontal, across e1 */
+  to_fixed(f, R_1, R_h, &lambda[0], &lambda[1]);
 }
 
 /* Horizontal velocity of O: v_1 along e1 and Z_O omega_1 across it. */
@@ -185,14 +188,12 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 /* (scene, y) => y_dot; returns N */
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
-  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
   Instant now = instant_of(scene, y, guided);
-  Accelerations a = guided ? move_guided(scene, &now.frame, &now.drift, law) : move(&now.system, law);
   double X_dot, Y_dot;
   set_velocity(&scene->wheel, &now.frame, &X_dot, &Y_dot);
-  set_rates(&now.frame, &a, y_dot);
+  set_rates(&now.frame, &now.accelerations, y_dot);
   put_pair(X_dot, Y_dot, y_dot + WHEEL_X_O);
-  return a.N;
+  return now.accelerations.N;
 }
 
 /* Apart, so that nothing of one is computed for the other. */
@@ -222,10 +223,8 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
   Instant now = instant_of(scene, y, scene->guided);
-  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]);
-  Accelerations a = scene->guided ? move_guided(scene, &now.frame, &now.drift, law) : move(&now.system, law);
-  reaction_of(&scene->wheel, &now, &a, out->lambda);
-  set_dynamics(scene, &now.frame, &a, out);
+  reaction_of(&scene->wheel, &now, out->lambda);
+  set_dynamics(scene, &now.frame, &now.accelerations, out);
 }
 
 static void stop_spin(const WheelParameters* wheel, double* y) {

@@ -36,8 +36,6 @@ bool check_all(const Instance& i, const fmi2ValueReference v[], std::size_t n, F
 
 }  // namespace
 
-extern "C" {
-
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                        const fmi2Integer orders[], const fmi2Real values[]) {
   return guarded(c, legality::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
@@ -89,5 +87,3 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     return i.log(Topic::discard, "%s: a derivative is not finite here.");
   });
 }
-
-}  // extern "C"

@@ -46,8 +46,6 @@ fmi2Status with_state(fmi2Component c, const char* name, fmi2FMUstate state, boo
 
 }  // namespace
 
-extern "C" {
-
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
     if (!state) return null_pointer;
@@ -98,5 +96,3 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     return no_fault;
   });
 }
-
-}  // extern "C"

@@ -46,8 +46,6 @@ fmi2Status switch_logging(Instance& i, bool on, std::size_t count, const fmi2Str
 
 }  // namespace
 
-extern "C" {
-
 const char* fmi2GetTypesPlatform() { return fmi2TypesPlatform; }
 const char* fmi2GetVersion() { return fmi2Version; }
 
@@ -103,5 +101,3 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 fmi2Status fmi2Reset(fmi2Component c) {
   return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { wheel::reset(i.wheel); });
 }
-
-}  // extern "C"

@@ -40,8 +40,6 @@ fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase
 
 }  // namespace
 
-extern "C" {
-
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
   return enter(c, legality::while_integrating, "fmi2EnterEventMode", Phase::event_mode);
 }
@@ -104,5 +102,3 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
   return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators", wheel::indicators);
 }
-
-}  // extern "C"

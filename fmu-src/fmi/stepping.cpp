@@ -51,8 +51,6 @@ fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& a
 
 }  // namespace
 
-extern "C" {
-
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return guarded(c, legality::do_step, "fmi2DoStep", [=](Instance& i) {
     if (!check_step(i, t, h)) return fmi2Error;
@@ -88,5 +86,3 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
   return get_status(c, "fmi2GetStringStatus", kind, fmi2PendingStatus, value, [](Instance&) { return ""; });
 }
-
-}  // extern "C"

@@ -95,8 +95,6 @@ fmi2Status check_strings(fmi2Component c, const fmi::Rule& rule, const char* nam
 
 }  // namespace
 
-extern "C" {
-
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2Real values[]) {
   return get(c, "fmi2GetReal", Type::real, v, n, values);
 }
@@ -122,5 +120,3 @@ fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
   return check_strings(c, legality::set_values, "fmi2SetString", v, n, values);
 }
-
-}  // extern "C"

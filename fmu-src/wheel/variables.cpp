@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reading.hpp"
+#include "wheel.hpp"
 
 namespace wheel {
 namespace {
