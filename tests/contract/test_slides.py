@@ -75,16 +75,6 @@ def test_the_forces_read_where_a_slide_begins_under_a_brake_are_those_that_follo
     assert modes == {(0, -1), (1, -1), (1, 0)}
 
 
-def test_while_it_slides_the_derivatives_by_the_brake_are_quotients_of_the_outputs(wheel) -> None:
-    w = wheel().start(**THROWN, M_brake=5.0).to(0.1)
-    assert w.get("contact_mode") == [1]
-    names = [n for n, v in w.variables.items() if v.causality == "output" and v.type == "Real"]
-    found = w.jacobian(names, ["M_brake"])[:, 0]
-    ends = [np.frombuffer(w.put(M_brake=5.0 + d).read(names)) for d in (0.5, -0.5)]
-    within(dict(zip(names, np.abs(ends[0] - ends[1] - found), strict=True)), 256 * EPSILON, "derivative")
-    beyond(abs(found[names.index("tau")]), 0.9, "derivative of tau")
-
-
 @pytest.mark.local  # sanitizers keep what is freed
 def test_a_state_of_a_wheel_that_rolls_and_one_of_a_wheel_that_slides_take_each_others_place(wheel) -> None:
     """They differ in size; 20,000 alternations take no more memory than the first ones."""

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
+from support.differences import LOADS, difference
 
 from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, ERROR, INDICATORS, OK, STATES, FMU2Wheel
 from wheelfmu.truth.exchange import exchange, loaded
@@ -15,7 +16,6 @@ from wheelfmu.truth.scenes import AT_REST
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "slope": 0.2, "slope_direction": 0.7, "psi_dot_start": 0.5, "F_X": 3.0, "M_2": 0.4}
 WEIGHT = 20 * 9.81  # N
-LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
 ODD = np.array([0.1, -0.2, 0.3, 1.1, 0.7, 0.9, 1 / 3, -1.7])  # a state off every symmetry
 
 
@@ -75,24 +75,6 @@ def test_a_snapshot_between_trial_steps_that_went_back_in_time_is_restored(libra
 
 
 REACTIONS = ("tau", "lambda_1", "lambda_3", "omega_z_dot", "theta_ddot", "psi_ddot")
-CENTRAL = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])  # of order 8
-ONE_SIDED = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])  # of order 6, at the first of 7 points
-
-
-def values_at(wheel: FMU2Wheel, known: str, values: list[float], names: tuple[str, ...] = REACTIONS) -> np.ndarray:
-    """A row for each value of a known, which has its own value again afterwards."""
-    (own,), rows = wheel.get(known), []
-    for value in [*values, own]:
-        assert wheel.set(**{known: value}) == OK
-        rows.append(wheel.get(*names))
-    return np.array(rows[:-1])
-
-
-def central(wheel: FMU2Wheel, known: str, h: float, names: tuple[str, ...]) -> np.ndarray:
-    (value,) = wheel.get(known)
-    return CENTRAL @ values_at(wheel, known, [value + k * h for k in range(-4, 5)], names) / h
-
-
 LAWS = ({}, {"s": 0.03}, {"s": 0.03, "friction_law": 2, "omega_s": 0.01, "M_brake": 1.0})
 
 
@@ -104,7 +86,7 @@ def test_directional_derivatives_are_differences_under_every_law(library: Librar
     with at_odd(library, **law) as wheel:
         wheel.place(0.3, np.array([*np.where(ODD == 1.1, theta, ODD)[:-1], -0.002]))  # inside the layer of the law
         got = wheel.jacobian(unknowns, tuple(steps))
-        want = np.array([central(wheel, known, h, unknowns) for known, h in steps.items()]).T
+        want = np.array([difference(wheel, unknowns, known, h, range(-4, 5)) for known, h in steps.items()]).T
     size = 1 + np.abs(want).max(axis=0)
     within((np.abs(got - want) / size).max(), 1e-9, "Jacobian, relative")
     beyond((np.abs(got * (1 + 1e-6) - want) / size).max(), 2e-7, "Jacobian a millionth larger, relative")
@@ -339,18 +321,15 @@ def test_nominal_rates_are_the_wheel_s_own_or_that_of_its_tilting_at_the_start_a
 def press(wheel: FMU2Wheel, share: float) -> None:
     """Sets F_Z so that N is this share of the weight: N is linear in it on either side of zero."""
     first = -9e3 if share > 0 else 9e3
-    rows = values_at(wheel, "F_Z", [first, 2 * first])
-    slope = (rows[1, 2] - rows[0, 2]) / first
-    assert wheel.set(F_Z=first + (share * WEIGHT - rows[0, 2]) / slope) == OK
+    (N,), (slope,) = wheel.put(F_Z=first).get("lambda_3"), difference(wheel, ["lambda_3"], "F_Z", first, (0, 1))
+    wheel.put(F_Z=first + (share * WEIGHT - N) / slope)
     assert wheel.get("lambda_3")[0] == pytest.approx(share * WEIGHT, rel=1e-6)
 
 
 def on_its_side(wheel: FMU2Wheel, known: str, h: float) -> np.ndarray:
     """d REACTIONS / d known by a difference to that side on which |N| grows."""
-    (value,) = wheel.get(known)
-    N = values_at(wheel, known, [value, value + h])[:, 2]
-    h *= 1 if (N[1] - N[0]) * N[0] > 0 else -1
-    return ONE_SIDED @ values_at(wheel, known, [value + k * h for k in range(7)]) / h
+    (growth,), (N,) = difference(wheel, ["lambda_3"], known, h, (0, 1)), wheel.get("lambda_3")
+    return difference(wheel, REACTIONS, known, h if growth * N > 0 else -h, range(7))
 
 
 def jacobian_error(wheel: FMU2Wheel, knowns: tuple[str, ...], h: float, share: float) -> float:
