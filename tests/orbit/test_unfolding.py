@@ -13,7 +13,7 @@ import pytest
 from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
 
-from wheelfmu.fmu.paths import probe
+from wheelfmu.fmu.building import probe
 from wheelfmu.truth.closed_forms import circle, critical_spin
 from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.orbit import Array, Halves, Orbit, energies, headline_of, stepped

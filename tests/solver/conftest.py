@@ -5,7 +5,7 @@ from functools import partial
 
 import pytest
 
-from wheelfmu.fmu.paths import probe
+from wheelfmu.fmu.building import probe
 
 from . import solving
 

@@ -7,15 +7,12 @@ import os
 import shutil
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 
 from wheelfmu.fmu.values import Fault
-
-PATIENCE = 5.0  # s, before a process says that it waits
 
 
 def check(
@@ -50,16 +47,11 @@ def alone(place: Path) -> Iterator[None]:
 
     name = sha256(str(place.resolve()).encode()).hexdigest()[:16]
     with (Path(tempfile.gettempdir()) / f"wheel-{os.getuid()}-{name}.lock").open("w") as file:
-        begin, told = time.monotonic(), False
-        while True:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except BlockingIOError:
-                if not told and time.monotonic() - begin > PATIENCE:
-                    print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
-                    told = True
-                time.sleep(0.1)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
+            fcntl.flock(file, fcntl.LOCK_EX)
         yield
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from importlib.resources import files
 from pathlib import Path
 
-from wheelfmu.fmu.paths import CMAKE, ROOT, without_stale_cache
+from wheelfmu.fmu import building
+from wheelfmu.fmu.paths import ROOT
 
 WASM = "wasm32-wasi"
 
@@ -23,7 +23,6 @@ def build(
 ) -> None:
     """One CMake target for one platform of zig's; sundials: its source tree, fetched if it is not given."""
     program = (zig or compiler()) / "zig"
-    without_stale_cache(out, sources, f"={program}\n")
     options = {
         "CMAKE_BUILD_TYPE": "Release",
         "CMAKE_UNITY_BUILD": platform == WASM,
@@ -36,15 +35,7 @@ def build(
         "WHEEL_SUNDIALS_SOURCE": sundials or os.environ.get("WHEEL_SUNDIALS_SOURCE", ""),
     }
     given = [f"-D{name}={value}" for name, value in options.items()]
-    log = out / "build.log"
-    with log.open("w", encoding="utf-8") as file:
-        for command in (
-            [*CMAKE, "-Wno-dev", "-S", sources, "-B", out, *given],
-            ["cmake", "--build", out, "--target", target, "--parallel", str(os.cpu_count())],
-        ):
-            if subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode:
-                print(*log.read_text(encoding="utf-8").splitlines()[-40:], sep="\n", file=sys.stderr)
-                raise SystemExit(f"The build for {platform} failed; the whole log is {log}.")
+    building.build(platform, out, sources, ["-Wno-dev", *given], [out, "--target", target], f"={program}\n")
 
 
 def wasm(folder: Path, made: str) -> Path:

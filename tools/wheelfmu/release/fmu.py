@@ -56,7 +56,6 @@ def write(out: Path, sources: Path = ROOT, zig: Path | None = None, sundials: st
     """out/wheel.fmu: the archive of the Linux build with the libraries of all platforms and its own evidence."""
     zig = zig or compiler()
     for platform in (LINUX, ARM, WINDOWS, INTEL_MAC, ARM_MAC):
-        print(f"Building {platform}", flush=True)
         build(out / platform, platform, "fmu", sources, zig, sundials)
     macs = [(out / platform / "wheel.dylib").read_bytes() for platform in (INTEL_MAC, ARM_MAC)]
     (out / UNIVERSAL).write_bytes(universal(macs))

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
+from wheelfmu.fmu.building import build_target
 from wheelfmu.fmu.driver import COUNTERS, HEADLINE, Values
-from wheelfmu.fmu.paths import ROOT, build_target
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import SINES
 

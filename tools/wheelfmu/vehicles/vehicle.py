@@ -4,7 +4,6 @@ A body with hubs names its variables as the wheels do, with _ and the wheel's na
 """
 
 import re
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -15,7 +14,8 @@ from pathlib import Path
 import numpy as np
 from pythonfmu.builder import FmuBuilder
 
-from wheelfmu.fmu.paths import CMAKE, ROOT, build_folder, without_stale_cache
+from wheelfmu.fmu import building
+from wheelfmu.fmu.paths import ROOT, build_folder
 
 from . import ssp
 from .master import Component, Connection, Ended, Master, Signal, loaded
@@ -30,10 +30,7 @@ Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and
 
 def build_c(folder: Path) -> Fmus:
     """The FMUs in C++, by name, by CMake (../CMakeLists.txt)."""
-    without_stale_cache(folder, EXAMPLES)
-    configure = [*CMAKE, "-S", EXAMPLES, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}"]
-    for command in (configure, ["cmake", "--build", folder]):
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    building.build("the examples", folder, EXAMPLES, [f"-DPython3_EXECUTABLE={sys.executable}"])
     return {fmu.stem: fmu for fmu in folder.glob("*.fmu")}
 
 

@@ -1,0 +1,81 @@
+"""Builds by CMake, of whatever generator the variable CMAKE_GENERATOR names: a folder by one process at a time.
+
+What stands at the head is of the standard library alone.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from ctypes import CDLL
+from pathlib import Path
+from subprocess import PIPE, STDOUT
+from typing import Any, TextIO
+
+from .outputs import alone
+from .paths import build_folder
+
+CMAKE = ("cmake", "-G", "Unix Makefiles")
+BAR = "{desc}: {percentage:3.0f} % |{bar:20}|"
+SHOWN = 60  # lines of the log of a build that failed
+
+
+def without_stale_cache(folder: Path, source: Path, line: str) -> None:
+    """A build folder; empty where the cache, which holds absolute paths, has another checkout, generator or line."""
+    cache = folder / "CMakeCache.txt"
+    wanted = (f"CMAKE_HOME_DIRECTORY:INTERNAL={source}\n", f"CMAKE_GENERATOR:INTERNAL={CMAKE[-1]}\n", line)
+    if cache.exists() and not all(line in cache.read_text(encoding="utf-8", errors="replace") for line in wanted):
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+
+
+def build(
+    name: str, folder: Path, source: Path, configure: Iterable[object], building: Iterable[object] = (), stale: str = ""
+) -> None:
+    """Configures and builds a folder; SystemExit with the end of FOLDER.log where that fails.
+
+    building: of CMake's --build, the folder if nothing is given; stale: what the cache must have."""
+    log = folder.with_name(f"{folder.name}.log")
+    to_configure = [*CMAKE, "-S", source, "-B", folder, *configure]
+    to_build = ["cmake", "--build", *(building or [folder]), "--parallel", os.cpu_count()]
+    if not sys.stderr.isatty():  # without a progress bar
+        print(f"Building {name}.", flush=True)
+    with alone(folder):
+        without_stale_cache(folder, source, stale)
+        with log.open("w", encoding="utf-8") as file:
+            done = all(succeeds(name, [str(word) for word in step], source, file) for step in (to_configure, to_build))
+    if not done:
+        print(*log.read_text(encoding="utf-8").splitlines()[-SHOWN:], sep="\n", file=sys.stderr)
+        raise SystemExit(f"The build of {name} failed; the whole log is {log}.")
+
+
+def succeeds(name: str, words: list[str], place: Path, log: TextIO) -> bool:
+    """Runs CMake, with a progress bar on a terminal."""
+    from tqdm import tqdm
+
+    how: dict[str, Any] = {"cwd": place, "stdout": PIPE, "stderr": STDOUT, "text": True, "errors": "replace"}
+    with (
+        subprocess.Popen(words, **how) as cmake,
+        tqdm(total=100, desc=f"Building {name}", bar_format=BAR, leave=False, disable=None) as bar,
+    ):
+        for line in cmake.stdout or ():
+            log.write(line)
+            if found := re.match(r"\[ *(\d+)%\] Building", line):
+                bar.update(int(found[1]) - bar.n)
+    return not cmake.returncode
+
+
+def build_target(name: str) -> Path:
+    """Builds one of the programs for tests in the build under test, whose folder is returned."""
+    folder = build_folder()
+    with alone(folder):
+        subprocess.run(["cmake", "--build", folder, "--target", name], check=True, capture_output=True)
+    return folder
+
+
+def probe(folder: str) -> CDLL:
+    """The shared library of tests/`folder`, made in the build under test."""
+    built = build_target(f"{folder}_probe") / "tests" / folder
+    return CDLL(str(next(built.glob(f"*{folder}_probe.*"))))
