@@ -12,7 +12,7 @@ import pytest
 from support.bounds import beyond, within
 
 from wheelfmu.fmu.driver import Values
-from wheelfmu.truth.cases import KINDS
+from wheelfmu.truth.errors import KINDS
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.scenes import PAPER, Scene
