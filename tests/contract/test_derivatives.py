@@ -122,16 +122,6 @@ def test_at_rest_without_friction_nothing_holds_the_wheel(wheel):
     beyond(np.max(np.abs(free - jacobian(held))), 0.1, "derivatives of the held wheel")
 
 
-def test_directional_derivatives_add_up_the_seeds(wheel):
-    w = wheel().start()
-    unknowns, knowns, seeds = w.refer(*outputs(w)), w.refer(*LOADS), [1.0, -2.0, 0.5, 3.0, 0.0, 7.0]
-    together = np.array(w.getDirectionalDerivative(unknowns, knowns, seeds))
-    within(np.max(np.abs(together - jacobian(w) @ seeds)), 32 * 20 * EPSILON, "derivative along seeds of 20 in all")
-    twice = np.array(w.getDirectionalDerivative(unknowns[::-1], [knowns[0]] * 2, [1.0, 2.0]))
-    within(np.max(np.abs(twice[::-1] - 3 * jacobian(w)[:, 0])), 16 * EPSILON, "derivative along two seeds of one input")
-    beyond(np.max(np.abs(together - jacobian(w) @ seeds[::-1])), 1, "derivative along other seeds")
-
-
 @pytest.mark.parametrize("share", [0.5, 3e-3, 1.5e-3, 1e-4, 1e-6])
 @pytest.mark.parametrize("kind", ["instant", "initialization"])
 def test_the_friction_that_is_required_next_to_lift_off_has_the_derivative_of_its_quotient(wheel, share, kind):
@@ -246,18 +236,6 @@ def test_the_moment_of_a_regularized_law_has_its_derivatives_by_spin_and_width_a
     assert x == 30.0 or abs(coarse / (-x * by_spin) - 1) > 1e-4  # over a tenth of omega_s it is another
     (velocity,) = w.jacobian(["Y_O_dot"], ["phi_dot_start"])[:, 0]
     within(abs(velocity / w.put(phi_dot_start=1.0).get("Y_O_dot")[0] - 1), 1e-9, "derivative of the velocity, relative")
-
-
-def test_asking_leaves_the_start_as_it_was(wheel):
-    w, other = (wheel().initializing(**ODD).give({"M_3": (0.0, 0.3)}) for _ in range(2))
-    for instance in (w, other):
-        instance.get("theta")
-    before = w.serialized()
-    assert before == other.serialized()
-    w.jacobian(["lambda_3"], ["m", "theta_start", "J_z", "s", "formulation", "keep_contact"])
-    assert w.serialized() == before
-    assert w.exitInitializationMode() == other.exitInitializationMode() == OK
-    assert w.run([1.0]) == other.run([1.0])
 
 
 BRAKED = {"theta_start": np.pi / 2, "phi_dot_start": 0.0, "s": 0.02}

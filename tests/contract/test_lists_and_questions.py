@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import beyond, within
+from support.differences import outputs
 
 from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, OK, STATES, Array, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
@@ -32,10 +33,6 @@ SCENES |= {
 LOAD = {"F_X": (3.0, 1.0), "F_Y": (-2.0, 0.5, -0.3), "M_1": (0.3,), "M_2": (0.2, 0.1), "M_brake": (0.5, 2.0)}
 BRAKE = {"M_brake": (0.5, 2.0), "M_3": (-2.0, 9.0)}
 each_scene = pytest.mark.parametrize("scene", SCENES)
-
-
-def outputs(w: FMU2Wheel) -> list[str]:
-    return [name for name, v in w.variables.items() if v.causality == "output" and v.type == "Real"]
 
 
 def stored(w: FMU2Wheel) -> list[str]:

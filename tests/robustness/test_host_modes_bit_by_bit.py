@@ -17,7 +17,8 @@ from contract.test_two_conditions import MEETINGS, started, steps
 from wheelfmu.fmu.driver import OK, WARNING, FMU2Wheel, Values
 from wheelfmu.truth.exchange import loaded
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.scenes import KINDS
+from wheelfmu.truth.scenes import FORCED, KINDS
+from wheelfmu.truth.sliding import SLIDES
 
 LIBM = ctypes.CDLL("libm.so.6")
 for function in (LIBM.fdim, LIBM.exp, LIBM.log, LIBM.sqrt):
@@ -125,6 +126,9 @@ class Host:
 STARTS: dict[str, Values] = {name: KINDS[name] for name in ("free", "sliding, stiff law", "multibody, bdf", "adams")}
 STARTS |= {"tiny": {"X_O_start": 1e-310, "psi_dot_start": -1e-310, "Y_O_start": 3e-308}}
 STARTS |= {"refused": {"m": -1 / 3, "omega_s": -0.1}, "ends": {"mu_max": 0.45, "s": 1e-310}}
+SCENES = KINDS | {f"slides: {name}": scene.start for name, scene in SLIDES.items() if name != "jams"}
+SCENES |= {str(kind): {**kind, "s": 0.02, "M_brake": 0.5} for kind in FORCED}
+SCENES |= {"weightless": {"g": 0.0, "keep_contact": True}, "weightless, driven": {"g": 0.0, "s": 0.01, "M_3": 4.0}}
 KNOWNS, UNKNOWNS = ("M_2", "F_Y"), ("lambda_1", "psi_ddot", "X_O", "mu_required")
 
 
@@ -154,19 +158,21 @@ def exchanged(w: FMU2Wheel, values: Values) -> list[object]:
     return [*seen, w.serialized(), w.texts()]
 
 
-def answers(slave: FMU2Wheel, master: FMU2Wheel) -> list[list[object]]:
+def answers(slave: FMU2Wheel, master: FMU2Wheel, starts: dict[str, Values] = STARTS) -> list[list[object]]:
     seen = []
-    for values in STARTS.values():
+    for values in starts.values():
         for loaded_library, way in ((slave, co_simulation), (master, exchanged)):
             with loaded_library.new(logging=True) as w:
                 seen.append(way(w, values))
     return seen
 
 
-def hosted(library: Library, modes: Iterator[Mode], in_logger: bool = False) -> list[list[object]]:
+def hosted(
+    library: Library, modes: Iterator[Mode], in_logger: bool = False, starts: dict[str, Values] = STARTS
+) -> list[list[object]]:
     """The answers in these modes, which are left as they are."""
     hosts = [Host(each, modes, in_logger) for each in (library.loaded, loaded(library))]
-    found = answers(*(host.library for host in hosts))
+    found = answers(*(host.library for host in hosts), starts)
     assert [host.changed for host in hosts] == [[], []]
     assert sum(host.heard for host in hosts) > 10
     return found
@@ -200,6 +206,11 @@ def changing(seed: int) -> Iterator[Mode]:
 @pytest.mark.parametrize("seed", range(3))
 def test_an_environment_that_changes_all_the_time_changes_no_answer(library, plain, seed: int, in_logger: bool) -> None:
     assert hosted(library, changing(seed), in_logger) == plain
+
+
+def test_in_no_scene_it_does(library: Library) -> None:
+    here = answers(library.loaded, loaded(library), SCENES)
+    assert all(hosted(library, changing(seed), starts=SCENES) == here for seed in range(5))
 
 
 @pytest.mark.parametrize(
