@@ -295,6 +295,16 @@ def test_a_drawn_tilt_stays_beside_the_true_one_with_its_mean_error(live, story,
     assert live.evaluate("page.plots.curves[0].sketch") is None
 
 
+def test_a_guess_can_be_drawn_by_arrow_keys(live, story):
+    live.evaluate(ASK, 2)
+    live.locator(".plot canvas").first.focus()
+    for key in ("ArrowDown", "ArrowRight", "ArrowUp", "ArrowUp", "ArrowLeft"):
+        live.keyboard.press(key)
+    drawn = live.evaluate("page.plots.curves[0].sketch")
+    assert drawn == [pytest.approx(point) for point in ([0, 75], [0.25, 65], [0.5, 65], [0.75, 75])]
+    assert live.evaluate("page.player.t") == 0
+
+
 def test_a_scene_is_no_secret_though_the_story_had_asked(live):
     live.evaluate(ASK, 2)
     live.locator("#live [name=scenes]").click()

@@ -9,6 +9,8 @@ const [LEFT, RIGHT, TOP, BOTTOM] = [48, 8, 10, 20];  // margins, CSS pixels
 const SMALL = 0.5;                                   // of a unit, below which values are in thousandths
 const BAR = 4;                                       // CSS pixels, where held or sliding
 const DASHES = [5, 4];
+const KEYS = 40;  // strokes of an arrow key draw a guess from start to end
+const DRAW = 'Draw how the tilt goes on: by mouse or finger, or by the arrow keys, of which the left one takes back';
 const FONT = '11px system-ui, sans-serif';
 
 /** Round numbers, at most about `count` of them, that span low to high. */
@@ -61,6 +63,7 @@ class Diagram {
       this.last = null;
       this.canvas.onpointermove(event);
     };
+    this.canvas.onkeydown = ({key}) => !(this.asks && this.sketchBy(key));
   }
 
   get kind() { return this.kinds[this.name]; }
@@ -191,6 +194,16 @@ class Diagram {
     this.sketch =
         [...this.sketch.filter(([other]) => other < from || other > to), [t, value]].sort(([a], [b]) => a - b);
     this.draw(this.player.t);
+  }
+
+  /** The guess goes on by an arrow key: up, down, level, or back; false for other keys. */
+  sketchBy(key) {
+    const rise = {ArrowUp: 10, ArrowDown: -10, ArrowRight: 0}[key];
+    const [t, value] = this.sketch.at(-1);
+    if (key === 'ArrowLeft' && this.sketch.length > 1) this.sketch.pop();
+    if (rise !== undefined) this.sketch.push([t + this.player.end / KEYS, Math.min(100, Math.max(0, value + rise))]);
+    this.draw(this.player.t);
+    return key.startsWith('Arrow');
   }
 
   /** The value of the guess at t, or NaN outside of it. */
@@ -333,6 +346,8 @@ export class Plots {
     tilt.asks = secret && draws;
     if (secret) tilt.sketch = draws ? [[this.player.start, tilt.at(tilt.wheels[0], this.player.start)[1]]] : null;
     tilt.canvas.classList.toggle('asks', tilt.asks);
+    tilt.canvas.tabIndex = tilt.asks ? 0 : -1;
+    tilt.canvas.title = tilt.canvas.ariaLabel = tilt.asks ? DRAW : tilt.kind.what;
     this.prepare();
   }
 
