@@ -228,7 +228,7 @@ def test_beside_another_motion_the_text_is_faint_and_leads_back(live, story):
     change(live, slope=0.35)
     assert live.evaluate(faint)[0] and "ended" not in live.locator("#story .text").inner_text()
     assert f"{live.evaluate('page.wheels[0].table.end'):.4g} s computed" in live.locator("#message").inner_text()
-    live.get_by_role("button", name="Back to the story's wheel").click()
+    live.locator("#live [name=story]").click()
     assert live.evaluate(faint)[0] is False and value(live, "slope") == 0
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page.pages import column, do, drawn, start
+from page.pages import change, column, do, drawn, start, value
 from PIL import Image
 from support.bounds import absolute_error, beyond, within
 
@@ -97,11 +97,22 @@ def test_a_film_shows_the_time_that_it_still_takes_and_ends_at_a_second_click(li
     live.keyboard.press("Escape")
 
 
-@pytest.fixture
-def planned(live):
-    start(live, theta_start=1.4, phi_dot_start=-3, s=0.02)
-    for t, name, value in ((1, "M_3", -2), (1.5, "M_3", 0), (2, "s", 0.005)):
-        do(live, t, **{name: value})
+PLANS = {
+    "free": ({}, ()),
+    "slope": ({"r": 0.0, "slope": 0.05, "slope_direction": 0.5, "s": 0.01}, ()),
+    "pushed": (
+        {"theta_start": 1.4, "phi_dot_start": -3, "s": 0.02},
+        ((1, {"M_3": -2}), (1.5, {"M_3": 0}), (2, {"s": 0.005})),
+    ),
+}
+
+
+@pytest.fixture(params=PLANS)
+def planned(live, request):
+    values, changes = PLANS[request.param]
+    start(live, **values)
+    for t, what in changes:
+        do(live, t, **what)
     return live
 
 
@@ -131,10 +142,17 @@ def test_the_commands_of_fmpy_and_python_make_the_same_run(planned, fmu_path, tm
 
 
 def test_the_c_program_makes_the_same_run_to_the_bit(planned, fmu, tmp_path):
+    """So the wheel in the page has the bits of the FMU."""
     (tmp_path / "run.c").write_text(command(planned, "C"))
     (shared,) = map(str, Path(fmu).glob("binaries/*/wheel.so"))
     run(["cc", "-Wall", "-Werror", "run.c", shared, "-o", "run"], tmp_path)
     rows = np.array([line.split() for line in run([tmp_path / "run"], tmp_path).splitlines()], dtype=float)
     assert len(rows) == 1000
-    for k, name in enumerate(("theta", "omega_z", "X_O", "Y_O"), 1):
-        assert rows[:, k].tobytes() == column(planned, name)[1:].tobytes(), name
+
+    def same() -> list[bool]:
+        names = ("theta", "omega_z", "X_O", "Y_O")
+        return [rows[:, k].tobytes() == column(planned, name)[1:].tobytes() for k, name in enumerate(names, 1)]
+
+    assert all(same())
+    change(planned, phi_dot_start=np.nextafter(value(planned, "phi_dot_start"), 0))
+    assert not any(same())

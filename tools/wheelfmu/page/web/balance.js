@@ -23,7 +23,8 @@ export function setUpBalance(live) {
     const words = make(
         'span', {title: formula.replaceAll('_', '')}, make('b', {}, name), ' ',
         make('small', {}, ...subscripted(formula)));
-    host.append(make('p', {className}, words, make('span', {className: 'bar'}, bar), number));
+    host.append(make(
+        'p', {className, style: `--own: var(--${className})`}, words, make('span', {className: 'bar'}, bar), number));
     return {bar, number};
   });
   return (wheel) => {

@@ -80,7 +80,7 @@ static void report(void* e, const char* name, int status, const char* category, 
 }
 
 static void* wheel;
-static void set(unsigned reference, double value) { fmi2SetReal(wheel, &reference, 1, &value); }
+static inline void set(unsigned reference, double value) { fmi2SetReal(wheel, &reference, 1, &value); }
 static inline void set_boolean(unsigned reference, int value) { fmi2SetBoolean(wheel, &reference, 1, &value); }
 
 int main(void) {

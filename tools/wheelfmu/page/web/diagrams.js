@@ -206,13 +206,6 @@ class Diagram {
     return key.startsWith('Arrow');
   }
 
-  /** The value of the guess at t, or NaN outside of it. */
-  guessed(t) {
-    const k = before(this.sketch.map(([other]) => other), t);
-    const [a, b] = [this.sketch[k], this.sketch[k + 1]];
-    return a && b ? a[1] + (t - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : NaN;
-  }
-
   timeAt(x) {
     const {start, end} = this.player;
     return start + ((x - LEFT) / this.sizes[0]) * (end - start);

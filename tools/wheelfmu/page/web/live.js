@@ -7,9 +7,8 @@ import {STEERING} from '#knobs';
 import {MOMENTS, nutation, POINTS} from '#mechanics';
 import {setUpPanel} from '#panel';
 import {chapters} from '#scenes';
-import {extent} from '#table';
+import {extent, POSE} from '#table';
 
-const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const SIGNALS = [
   'omega_z', 'theta_ddot', 'lambda_1', 'lambda_2', 'lambda_3', 'E', 'friction_mode', 'n_events', 'slip_x', 'slip_y',
   'M_guide_1', 'M_guide_2'

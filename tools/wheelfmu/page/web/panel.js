@@ -14,11 +14,11 @@ const NEAR = 10;  // degrees of lean, up to which the critical spin of upright r
 /** The tabs, story or scenes, and a button for each scene. */
 function setUpScenes(live) {
   const tabs = [
-    {name: 'story', textContent: 'Story', title: 'What the wheel does and why, step by step'},
+    {name: 'story', textContent: 'Story', title: 'What the wheel does and why, step by step; back to its wheel'},
     {name: 'scenes', textContent: 'Scenes', title: 'Scenes to begin with'},
   ];
   const markTab = makeChoice($('#live .tabs'), tabs, (name) => {
-    if (name === 'story' && !live.open) live.turn(0);
+    if (name === 'story') live.turn(0);
     live.open = name === 'story';
   });
   const all = scenes(live.parameters(), live.steps);

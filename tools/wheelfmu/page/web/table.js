@@ -21,6 +21,7 @@ export function before(times, t) {
   return low;
 }
 
+export const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const POLE = 10;  // the last step of a normal force that grows without bound: many times the force before
 
 export class Table {

@@ -3,8 +3,8 @@
 import {commands} from '#commands';
 import {$, make, makeChoice} from '#dom';
 import {compose, encodes, film} from '#film';
+import {POSE} from '#table';
 
-const POSE = ['X_O', 'Y_O', 'Z_O', 'psi', 'theta', 'phi'];
 const FIXED = ['r_0', 'r', 'slope', 'slope_direction'];
 const wordOf = (name) => name.replace(/[^\w]+/g, '_');
 
