@@ -110,11 +110,6 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
                           "psi_dot_guide, theta_dot_guide = %s, %s rad/s: only the carrier of a guided wheel turns, by "
                           "co-simulation; else they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
-  const auto unset = [&](unsigned parameter) { return v[parameter] == row_of(parameter).start; };
-  if (sound && at_start && v[guided] != 0 && unset(psi_start) && unset(theta_start))
-    reporter.log(Topic::warning,
-                 "The guided wheel keeps the paper's psi_start and theta_start: it heads along Y, and its axle is 15 "
-                 "degrees off the road's plane; a vehicle's wheel has psi_start = 0 and theta_start = pi/2.");
   return sound;
 }
 

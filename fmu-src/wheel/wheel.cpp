@@ -27,6 +27,16 @@ bool check_start(const Wheel& w, Reading& start, const Reporter& reporter) {
                         Digits{start.kinematics().omega_z, 3});
 }
 
+// Once, at the end of the initialization.
+void warn_of_paper_start(const Wheel& w) {
+  const double* v = w.demand.parameters;
+  const auto unset = [&](unsigned parameter) { return v[parameter] == row_of(parameter).start; };
+  if (v[variable::guided] != 0 && unset(variable::psi_start) && unset(variable::theta_start))
+    w.reporter.log(Topic::warning,
+                   "The guided wheel keeps the paper's psi_start and theta_start: it heads along Y, and its axle is 15 "
+                   "degrees off the road's plane; a vehicle's wheel has psi_start = 0 and theta_start = pi/2.");
+}
+
 // To a phase without further steps: the solution is not needed any more.
 void freeze(Wheel& w, Phase phase) {
   state_now(w);
@@ -117,7 +127,10 @@ bool start(Wheel& w) {
   const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
   InForce before;
   before.scene = w.setup.scene;
-  if (sound) log_changes(w, before);
+  if (sound) {
+    warn_of_paper_start(w);
+    log_changes(w, before);
+  }
   w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
   return sound;
 }

@@ -1,0 +1,241 @@
+"""The other side of a check: what is still taken and what is not any more of the caller's clock, on both sides of the
+time reached and of the stop time; warnings where they must not appear; how many digits a message writes.
+"""
+
+import re
+from math import pi
+
+import numpy as np
+import pytest
+from support.bounds import within
+
+from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Values
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER
+from wheelfmu.truth.sliding import HUB, ROAD, THROWN
+
+WEIGHT = PAPER.m * PAPER.g
+sides = pytest.mark.parametrize("side", [1, -1])
+
+# ---- the clock ----
+
+
+@sides
+@pytest.mark.parametrize("start", [0.0, 0.5, -0.5, 1e3, -1e3, 1e7])
+@pytest.mark.parametrize("h", [1e-3, 1.0, 100.0])
+def test_a_step_may_begin_off_the_time_reached_by_a_billionth_of_it_and_the_rounding_of_times(wheel, side, start, h):
+    """1e-9 h + 1e-13 (|t| + |time reached|); it ends where the caller says."""
+    off = side * (1e-9 * h + 2e-13 * abs(start))
+    for share, status in ((0.8, OK), (1.25, ERROR), (50.0, ERROR)):
+        w = wheel().start(start=start)
+        before = w.serialized()
+        t = start + share * off
+        assert w.ask("DoStep", t, h, 0) == status, share
+        if status == OK:
+            assert w.status(LAST_SUCCESSFUL_TIME) == t + h
+        else:
+            assert "the FMU has reached" in w.said() and w.serialized() == before
+
+
+@pytest.mark.parametrize("stop", [1.0, -5.0, 1e4, -1e-3])
+def test_a_step_may_pass_the_stop_time_by_a_billionth_of_times(wheel, stop):
+    """1e-9 (|t| + |stop|)."""
+    for share, status in ((-3.0, OK), (0.0, OK), (0.8, OK), (1.25, ERROR), (10.0, ERROR)):
+        w = wheel().start(start=stop - 0.125, stop=stop)
+        end = stop + share * 2e-9 * abs(stop)
+        assert w.ask("DoStep", stop - 0.125, end - (stop - 0.125), 0) == status, share
+        assert status == OK or "the stop time is" in w.said()
+
+
+def test_a_stop_time_of_zero_has_no_rounding_and_one_at_the_start_allows_no_step(wheel):
+    for end, status in ((0.0, OK), (1e-12, ERROR)):
+        w = wheel().start(start=-0.5, stop=0.0)
+        assert w.ask("DoStep", -0.5, 0.5 + end, 0) == status
+    w = wheel().start(start=2.0, stop=2.0)
+    assert (w.step(0.0), w.step(1e-3)) == (OK, ERROR)
+
+
+def test_a_step_of_no_length_is_taken_and_one_below_zero_is_not(wheel):
+    w = wheel().start()
+    assert [w.ask("DoStep", 0.0, h, 0) for h in (0.0, -0.0, -5e-324, -1e-300)] == [OK, OK, ERROR, ERROR]
+
+
+# ---- warnings where they must not appear ----
+
+FULL = (PAPER.J_z / 0.35**2 + PAPER.m) * PAPER.g * 0.35  # N m, with which an upright wheel needs mu = 1
+GRIP = "more than a dry road gives"
+
+
+def texts_of(w: FMU2Wheel) -> str:
+    return " ".join(w.texts())
+
+
+@pytest.mark.parametrize(("share", "road", "warned"), [
+    (1.02, {}, True),
+    (0.98, {}, False),
+    (1.02, {"mu_max": 5.0}, False),
+    (1.02, {"mu_max": 5.0, "mu_slide": 4.0}, False),
+    (0.98, {"s": 0.01}, False),
+])  # fmt: skip
+@sides
+def test_the_grip_of_a_dry_road_is_warned_of_beyond_it_on_a_road_without_a_limit_alone(
+    wheel, side, share, road, warned
+):
+    w = wheel().start(**AT_REST, **road).put(M_3=side * share * FULL).to(0.2)
+    assert (GRIP in texts_of(w)) == warned
+    blob = w.serialized()
+    assert GRIP not in texts_of(wheel().back(blob).to(0.6)) and GRIP not in texts_of(w.to(0.6))
+
+
+def test_the_grip_of_a_wheel_that_nothing_loads_is_never_warned_of(wheel):
+    """Down a slope it needs tan(slope) / (1 + m R^2 / J_z)."""
+    steep = {**AT_REST, "psi_start": 0.0, "slope": 1.3}
+    w, loaded = wheel().start(**steep).to(0.2), wheel().start(**steep, F_X=1e-6).to(0.2)
+    assert w.get("mu_required")[0] > 1.3 and w.texts() == []
+    assert GRIP in texts_of(loaded)  # the partner
+
+
+@pytest.mark.parametrize(("tolerance", "warned"), [
+    (None, False), (1e-13, False), (1e-4, False), (9.99e-14, True), (1.001e-4, True), (1e-8, False), (1e300, True),
+])  # fmt: skip
+def test_a_tolerance_is_warned_of_outside_its_limits_alone(wheel, tolerance, warned):
+    w = wheel().start(tolerance=tolerance)
+    assert ("The tolerance" in texts_of(w)) == warned
+
+
+UPRIGHT = "exactly upright"
+TIPPED: list[tuple[Values, bool]] = [
+    ({}, True),
+    ({"theta_start": pi / 2 + 3e-15}, False),
+    ({"theta_start": pi / 2 - 1e-9}, False),
+    ({"theta_dot_start": 1e-9}, False),
+]
+
+
+@pytest.mark.parametrize(("values", "warned"), TIPPED)
+def test_that_a_wheel_fell_from_exactly_upright_is_warned_of_where_nothing_but_rounding_tipped_it(
+    wheel, values, warned
+):
+    w = wheel().start(**{**AT_REST, **values})
+    assert w.step(100.0) == DISCARD
+    text = texts_of(w)
+    assert "lies flat" in text and (UPRIGHT in text) == warned
+
+
+def test_other_ends_of_an_upright_wheel_are_no_falls(wheel):
+    w = wheel().start(**AT_REST, mu_max=0.3).put(M_3=-90.0)
+    assert w.step(1.0) == DISCARD and "needs a friction" in texts_of(w)
+    lifted = wheel().start(**AT_REST).put(F_Z=2 * WEIGHT)
+    assert lifted.step(1.0) == DISCARD
+    text = texts_of(lifted)
+    assert UPRIGHT not in text and "F_Z > 0 lifts the wheel" in text
+
+
+LIFTS: list[tuple[Values, dict[str, tuple[float, ...]], str, bool]] = [
+    ({}, {"F_Z": (0.0, 500.0)}, "lifted off", True),
+    ({"theta_dot_start": 5.0, "psi_dot_start": 6.0, "phi_dot_start": 4.0}, {}, "lifted off", False),
+    ({"theta_dot_start": 5.0, "psi_dot_start": 6.0, "phi_dot_start": 4.0}, {"F_Z": (-20.0,)}, "lifted off", False),
+    ({"mu_max": 0.3}, {"F_Z": (20.0,)}, "needs a friction", False),
+]
+
+
+@pytest.mark.parametrize(("values", "inputs", "end", "warned"), LIFTS)
+def test_the_sign_of_F_Z_is_pointed_out_where_it_has_lifted_the_wheel_alone(wheel, values, inputs, end, warned):
+    w = wheel().start(**values).give(inputs)
+    assert w.step(2.0) == DISCARD
+    text = texts_of(w)
+    assert end in text and ("F_Z > 0 lifts" in text) == warned
+
+
+GUIDE: list[tuple[Values, bool]] = [
+    ({"guided": True}, True),
+    ({"guided": True, "psi_start": 1e-9}, False),
+    ({"guided": True, "theta_start": 1.3089}, False),
+    ({}, False),
+    ({"guided": True, "psi_dot_start": 1.0}, False),  # refused: one message, of the fault
+]
+
+
+@pytest.mark.parametrize(("values", "warned"), GUIDE)
+def test_the_start_of_a_guided_wheel_is_warned_of_where_it_is_the_papers_and_sound(wheel, values, warned):
+    w = wheel().initializing(**values)
+    for s in (0.01, 0.02):
+        w.put(s=s).get_one("theta_ddot")  # the start is computed, and again
+    assert "keeps the paper's" not in texts_of(w)
+    w.exitInitializationMode()
+    assert texts_of(w).count("keeps the paper's") == warned
+
+
+JAMS: Values = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
+
+
+def test_a_jam_is_warned_of_where_forces_are_read_after_a_road_was_set_and_once_it_slides_alone(wheel):
+    w = wheel().start(**JAMS, mu_max=0.5, mu_slide=0.4).to(0.001)
+    assert w.put(mu_max=9.0, mu_slide=0.6).get("lambda_3")[0] > 0 and w.texts() == []
+    w.put(mu_slide=5.0).get("mu_slide", "mu_max", "F_X")  # no force is read
+    assert w.texts() == []
+    w.get("lambda_3", "lambda_1", "theta_ddot")
+    assert len(w.texts()) == 1
+    rolls = wheel().start(**{**HUB, "theta_start": 0.87}, mu_max=9.0, mu_slide=0.4).to(0.001).put(mu_slide=8.0)
+    assert rolls.get("contact_mode") == [0] and rolls.get("lambda_3") and rolls.texts() == []
+
+
+def test_a_change_to_another_law_is_no_transition_and_is_not_logged(wheel):
+    w = wheel(logging=True).start(s=0.02, phi_dot_start=-6.0).to(0.1)
+    for s in (0.0, 0.02, 0.01, 0.0):
+        w.put(s=s).to(w.time + 0.01)
+    assert w.put(M_brake=1.0).to(0.2).put(M_brake=0.0).to(0.3).texts() == [] and w.get("n_events") == [0]
+    law = {"s": 0.03, "friction_law": 2}
+    for omega_s in (0.1, 1e-6):
+        w = wheel(logging=True).start(omega_s=omega_s, **law).to(3.0)
+        assert w.texts() == [] and w.get("n_events") == [0]
+    held = wheel(logging=True).start(s=0.02, **AT_REST).to(0.1)  # the partner
+    assert "release" in texts_of(held.put(M_3=9.0).to(0.2)) and held.get("n_events") == [1]
+
+
+@pytest.mark.parametrize("keep", [True, False])
+def test_a_pull_is_logged_where_the_ground_may_pull_alone(wheel, keep):
+    w = wheel().start(keep_contact=keep, theta_dot_start=5.0, psi_dot_start=6.0, phi_dot_start=4.0, s=0.01)
+    w.step(1.0)
+    text = texts_of(w)
+    assert ("pulls" in text) == keep and ("lifted off" in text) == (not keep)
+
+
+def test_model_exchange_warns_of_nothing_on_the_way(library: Library) -> None:
+    with exchange(library, **AT_REST, M_3=-3 * FULL) as w:
+        for k in range(5):
+            w.place(0.05 * k, w.x() + 0.05 * w.derivatives())
+            w.event()
+        assert w.get("mu_required")[0] > 1 and w.texts() == []
+
+
+def test_a_healthy_start_of_every_kind_is_silent(wheel):
+    starts: list[Values] = [{}, {**GENERAL, "s": 0.02}, {**ROAD, **THROWN}, {"friction_law": 2, "s": 0.02}, AT_REST]
+    starts += [{"mu_max": 0.9}, {"slope": 0.3}, {"r": 0.0}, {"g": 0.0, "keep_contact": True}, {"psi_start": 1e12}]
+    for values in starts:
+        assert wheel().start(**values).to(1e-3).texts() == [], values
+
+
+# ---- digits ----
+
+
+def test_a_number_is_written_with_the_fewest_digits_from_15_on_that_read_back(wheel):
+    random, w, lengths = np.random.default_rng(8), wheel().start(), set()
+    numbers = [-float(x) for x in 10 ** random.uniform(-5, 5, 60)] + [-0.1, -1 / 3, -2 / 3, -1e-300, -123456789012345.0]
+    for number in numbers:
+        assert w.set(s=number) == DISCARD
+        (written,) = re.findall(r"s = (\S+): it must", w.said())
+        digits = next(digits for digits in (15, 16, 17) if float(f"{number:.{digits}g}") == number)
+        assert written == f"{number:.{digits}g}"
+        lengths.add(digits)
+    assert lengths == {15, 16, 17}
+
+
+@pytest.mark.parametrize("start", [999_990.0, 1_000_010.0, -999_990.0, -1_000_010.0])
+def test_an_instant_is_written_to_the_nanosecond_below_a_million_seconds_and_in_full_beyond(wheel, start):
+    w, early = wheel(logging=True).start(start=start, s=0.03).to(start + 1.4), wheel(logging=True).start(s=0.03).to(1.4)
+    found, near = (re.findall(r"^t = (\S+) s", text)[0] for text in (w.texts()[0], early.texts()[0]))
+    within(abs(float(found) - start - float(near)), 1e-9, "instant since the start, s")
+    exact = start + 1.225520636
+    assert (round(float(found), 9) == float(found)) or abs(exact) >= 1e6
