@@ -11,9 +11,6 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import OK, FMU2Wheel
-from wheelfmu.truth.exchange import exchange
-from wheelfmu.truth.motion import Library
-from wheelfmu.truth.sliding import SLIDES
 
 TIMES = np.arange(1, 26) * 0.1
 SHAPES = ("theta", "psi_dot", "theta_dot", "phi_dot", "omega_z", "lambda_1", "lambda_2", "lambda_3", "tau", "n_steps")
@@ -74,30 +71,3 @@ def test_an_angle_of_many_turns_is_read_as_it_was_set(wheel) -> None:
     for angle in (-3.0, 7.0, 1234.5, 1e12):
         w = wheel().start(psi_start=angle, phi_start=-angle, s=0.03)
         assert w.get("psi", "phi") == [angle, -angle]
-
-
-def test_derivatives_by_an_angle_of_many_turns_are_those_of_the_angle_at_home(library: Library, wheel) -> None:
-    pushed = {"F_X": 40.0, "F_Y": -15.0, "psi_dot_start": 0.7}
-
-    def by_state(psi: float) -> np.ndarray:
-        with exchange(library, psi_start=psi, **pushed) as w:
-            return w.jacobian(["lambda_1", "lambda_2", "theta_ddot", "psi"], ["psi", "phi"])
-
-    def by_parameter(psi: float) -> np.ndarray:
-        return wheel().initializing(psi_start=psi, **pushed).jacobian(["lambda_1", "X_O_dot", "psi"], ["psi_start"])
-
-    def of_a_slide(angle: float) -> np.ndarray:
-        slide = {**SLIDES["thrown"].start, "J_x": 0.7, "J_y": 1.2, "psi_start": angle, "phi_start": angle}
-        names = ["X_O_dot", "Y_O_dot", "lambda_1", "lambda_2", "theta_ddot", "psi_ddot"]
-        return wheel().initializing(**slide).jacobian(names, ["psi_start", "phi_start"])
-
-    def in_time(psi: float) -> np.ndarray:
-        w = wheel().start(psi_start=psi, **pushed)
-        return np.array(w.rates(["lambda_1", "lambda_2"])())
-
-    for slopes in (by_state, by_parameter, of_a_slide, in_time):
-        for psi in (1e8, 1e11, -7e11):
-            near, turned = slopes(home(psi)), slopes(home(psi) + 1e-3)
-            size = np.abs(near).max()
-            within(np.abs(slopes(psi) - near).max() / size, 64 * EPSILON, f"slopes {slopes.__name__}, relative")
-            beyond(np.abs(turned - near).max() / size, 1e-9, f"those at another heading {slopes.__name__}, relative")
