@@ -24,9 +24,13 @@ def module_of(name: str) -> ModuleType:
 def read(name: str, module: ModuleType, words: list[str]) -> Any:
     """What is typed after a command; Fault, or argparse's end of the program."""
     if own := getattr(module, "reads", None):
+        plain = [word for word in words if word not in ("-h", "--help")]
+        if len(plain) < len(words) and hasattr(module, "usage"):
+            print(module.usage(plain))
+            sys.exit()
         return own(words)
     form = {"description": module.__doc__, "formatter_class": RawDescriptionHelpFormatter}
-    parser = Parser(prog=f"scripts/{name}", **form)
+    parser = Parser(prog=f"./scripts/{name}", **form)
     for option, how in getattr(module, "OPTIONS", {}).items():
         parser.add_argument(option, **how)
     return parser.parse_args(words)

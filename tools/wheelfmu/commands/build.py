@@ -1,9 +1,12 @@
-"""Configures and builds one preset of CMakePresets.json: ./scripts/build [PRESET [CMAKE OPTION...]], release if none is
-given. It shows its progress; the compiler's output is in build/PRESET.log."""
+"""Compiles wheel.fmu into build/PRESET.
+
+  ./scripts/build [PRESET [CMAKE OPTION...]]
+
+PRESET: release (if none is given), or another of CMakePresets.json: dev, debug, asan, tidy, coverage. What the compiler
+prints is in build/PRESET.log."""
 
 import json
 import os
-import sys
 
 from wheelfmu.fmu import building
 from wheelfmu.fmu.outputs import deliver
@@ -17,10 +20,11 @@ def presets() -> list[str]:
     return [of["name"] for of in json.loads((ROOT / "CMakePresets.json").read_text())["buildPresets"]]
 
 
+def usage(_words: list[str]) -> str:
+    return __doc__ or ""
+
+
 def reads(words: list[str]) -> list[str]:
-    if {"-h", "--help"} & {*words}:
-        print(__doc__)
-        sys.exit()
     preset = words[0] if words else "release"
     if preset not in presets():
         meant = suggestion(preset, dict.fromkeys(presets(), ""))

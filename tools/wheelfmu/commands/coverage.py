@@ -1,5 +1,5 @@
-"""Line and branch coverage of fmu-src by the tests, as gcovr's page build/coverage/index.html. Exit status 0 only if
-the tests pass and reach 95 % of the lines."""
+"""Measures which lines and branches of fmu-src the tests reach. gcovr's page of them is build/coverage/index.html. Exit
+status 0 only if the tests pass and reach 95 % of the lines."""
 
 import os
 from argparse import Namespace

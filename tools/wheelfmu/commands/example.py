@@ -1,6 +1,5 @@
-"""A vehicle made of FMUs, or the wheel for a control engineer: ./scripts/example NAME [parameter=value ...]. Builds,
-runs with a progress bar, prints a verdict, draws; results/examples/ has all of it. Exit status 1: the manoeuvre
-failed."""
+"""Builds, runs and draws a vehicle made of FMUs, or the wheel for a control engineer. Prints a verdict;
+results/examples/ has all of it. Exit status 1: the manoeuvre failed."""
 
 import sys
 
@@ -12,13 +11,15 @@ from wheelfmu.fmu.paths import ROOT
 PART = "examples/vehicles"
 
 
+def usage(words: list[str]) -> str:
+    from wheelfmu.vehicles import options
+
+    return options.usage(*words)
+
+
 def reads(words: list[str]) -> list[str]:
     from wheelfmu.vehicles import options
 
-    plain = [word for word in words if word not in ("-h", "--help")]
-    if len(plain) < len(words):
-        print(options.usage(*plain))
-        sys.exit()
     options.asked(*words)
     return words
 

@@ -1,5 +1,5 @@
-"""Regenerates the README's pictures from the project's data: docs/figures/paper_diagrams.png, and wheel_motion.webp,
-recorded from results/wheel.html in headless Chromium."""
+"""Draws the README's pictures anew: docs/figures/paper_diagrams.png, and wheel_motion.webp, which is recorded from
+results/wheel.html in headless Chromium."""
 
 from argparse import Namespace
 

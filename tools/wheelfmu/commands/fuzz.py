@@ -1,5 +1,4 @@
-"""The coverage-guided fuzzer of the C interface under address and undefined-behaviour sanitizers
-(tests/robustness/fuzz).
+"""Searches for calls of the FMU that break it, by libFuzzer under sanitizers (tests/robustness/fuzz).
 
   ./scripts/fuzz SECONDS [FOLDER]   stops at a broken expectation; FOLDER keeps the inputs found (default build/corpus)
   ./scripts/fuzz keep [FOLDER]      reduces those inputs to the corpus from which every run starts
@@ -33,8 +32,14 @@ def seconds(text: str) -> str:
 
 
 OPTIONS = {
-    "seconds": {"nargs": "?", "type": seconds, "default": "60", "metavar": "SECONDS|keep"},
-    "folder": {"nargs": "?", "type": Path, "default": Path("build/corpus"), "metavar": "FOLDER"},
+    "seconds": {"nargs": "?", "type": seconds, "default": "60", "metavar": "SECONDS|keep", "help": "60 if not given"},
+    "folder": {
+        "nargs": "?",
+        "type": Path,
+        "default": Path("build/corpus"),
+        "metavar": "FOLDER",
+        "help": "build/corpus if not given",
+    },
 }
 
 

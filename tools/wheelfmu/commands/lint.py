@@ -1,4 +1,4 @@
-"""Formatting and lint of C, C++, JavaScript, Python, CMake, shell, workflows; types; imports; spelling."""
+"""Checks format, style, types, imports and spelling of all files that git knows."""
 
 from argparse import Namespace
 from fnmatch import fnmatch
@@ -11,8 +11,8 @@ from wheelfmu.fmu.values import Fault
 
 NEEDS = ("check",)
 OPTIONS = {
-    "--fix": {"action": "store_true", "help": "formats"},
-    "files": {"nargs": "*", "metavar": "FILE", "help": "these alone, without types and imports"},
+    "--fix": {"action": "store_true", "help": "formats the files, and mends what ruff can, instead"},
+    "files": {"nargs": "*", "metavar": "FILE", "help": "these alone, without types and imports; a pattern of git"},
 }
 GERSEMI = ("gersemi", "--line-length", "120", "--indent", "2")
 RUFF = ("ruff", "check", "-q", "--no-cache")  # its cache misses a folder that becomes a package or ceases to be one

@@ -1,5 +1,4 @@
-"""Opens the notebook examples/wheel.ipynb, a lesson on the rolling wheel with exercises, in JupyterLab, which it
-installs first."""
+"""Opens a lesson on the rolling wheel, the notebook examples/wheel.ipynb, in JupyterLab."""
 
 import os
 from argparse import Namespace

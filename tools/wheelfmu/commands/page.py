@@ -1,4 +1,4 @@
-"""Writes the live page, results/wheel_live.html or the file given. It contains wheel.fmu's sources compiled to
+"""Writes the live page, on which the wheel runs in a browser. One offline file contains wheel.fmu's sources compiled to
 WebAssembly with the releases' compiler; its trajectories are bit-identical to the released FMU's (docs/page.md)."""
 
 from argparse import Namespace
@@ -8,8 +8,14 @@ from wheelfmu.fmu.paths import ROOT
 
 PART, STAYS, NEEDS = "tools/wheelfmu/page", True, ("page",)
 OPTIONS = {
-    "file": {"nargs": "?", "type": Path, "default": ROOT / "results" / "wheel_live.html", "metavar": "FILE"},
-    "--overwrite": {"action": "store_true", "help": "replaces other files too"},
+    "file": {
+        "nargs": "?",
+        "type": Path,
+        "default": ROOT / "results" / "wheel_live.html",
+        "metavar": "FILE",
+        "help": "if not given, results/wheel_live.html",
+    },
+    "--overwrite": {"action": "store_true", "help": "replaces also a FILE that is not of this command"},
 }
 
 

@@ -1,7 +1,7 @@
-"""One wheel.fmu for Linux, Windows and macOS, built on this Linux machine (x86-64), tested as far as it can run here.
-Leaves the folder build/wheel-VERSION with the FMU, the site, the notes and their SHA-256 sums, writes
-docs/results/platforms.md, and prints the commands that tag it. Every library is built twice, in two folders; the two
-FMUs must be identical files."""
+"""Builds one wheel.fmu for Linux, Windows and macOS, on Linux (x86-64), and tests it as far as it runs here. Leaves the
+folder build/wheel-VERSION with the FMU, the site, the notes and their SHA-256 sums, writes docs/results/platforms.md,
+and prints the commands that tag it. Every library is built twice, in two folders; the two FMUs must be identical
+files."""
 
 from argparse import Namespace
 

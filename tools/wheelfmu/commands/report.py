@@ -1,4 +1,4 @@
-"""Measures and writes reports: ./scripts/report NAME...|all [OPTION...]."""
+"""Measures accuracy, speed and more, and writes the pages of docs/results."""
 
 import os
 from argparse import Namespace

@@ -53,10 +53,11 @@ PAGE = ROOT / "tools" / "wheelfmu" / "page"
 OLD = ("free.*", "friction.*", "wheel.html", "error_time.*", "diagrams.*", "diagram_*")
 
 
+def usage(_words: list[str]) -> str:
+    return f"{__doc__}\n{start_values.usage()}"
+
+
 def reads(words: list[str]) -> list[str]:
-    if {"-h", "--help"} & {*words}:
-        print(__doc__.strip(), "", start_values.usage(), sep="\n")
-        sys.exit()
     start_values.values(words)
     return words
 

@@ -1,6 +1,5 @@
-"""Installs the prerequisites of commands: Debian packages (as root by apt-get; otherwise it lists them) and .venv
-with the Python packages of requirements.lock. Two at once wait for each other. Without a word it installs what
-./scripts/run needs."""
+"""Installs what commands need: Debian packages (as root by apt-get; otherwise it lists them), and in the folder .venv
+Python packages in the versions of requirements.lock. Other commands set themselves up."""
 
 from argparse import Namespace
 
@@ -19,7 +18,7 @@ WORDS = [
     "notebook",
     "release",
 ]
-ABOUT = "also what these commands need; check: linters and pytest; test: all that ./scripts/test needs, and more"
+ABOUT = f"besides what ./scripts/run needs: {', '.join(WORDS)}; test is most of them, check the linters and pytest"
 OPTIONS = {"words": {"nargs": "*", "metavar": "WORD", "choices": [*WORDS, []], "help": ABOUT}}
 
 

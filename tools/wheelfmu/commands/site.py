@@ -1,5 +1,5 @@
-"""Builds build/site, a folder for any static host: all documents with search and formulas, the reports, the notebook,
-the reference of the C header, and the live page. The site is self-contained; a broken link fails the build."""
+"""Builds the site of all documents, the folder build/site, for any static host. It has search and formulas, reports,
+the notebook, the reference of the C header, and the live page, and is self-contained; a broken link fails the build."""
 
 import shutil
 from argparse import Namespace

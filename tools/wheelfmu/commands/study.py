@@ -1,4 +1,5 @@
-"""Many wheels on all cores or on a Dask cluster: a grid or a list of start values and parameters (docs/studies.md)."""
+"""Runs many wheels on all cores or on a Dask cluster: a grid or a list of start values and parameters
+(docs/studies.md)."""
 
 from argparse import Namespace
 

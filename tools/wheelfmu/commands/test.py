@@ -1,5 +1,5 @@
-"""Every check and test: formatting, lint and clang-tidy; warnings as errors; all tests, those of the core again as on
-a processor without AVX2 and FMA; the contract tests and a minute of fuzzing under the sanitizers. Exit status 0 only
+"""Runs every check and test: formatting, lint and clang-tidy; warnings as errors; all tests, those of the core again as
+on a processor without AVX2 and FMA; the contract tests and a minute of fuzzing under the sanitizers. Exit status 0 only
 if all passed. A fresh checkout takes about a quarter of an hour on two cores.
 
   ./scripts/test          everything

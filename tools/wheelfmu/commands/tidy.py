@@ -1,4 +1,4 @@
-"""clang-tidy over fmu-src, file by file, as clang compiles it. The checks are in .clang-tidy."""
+"""Runs clang-tidy over fmu-src, file by file, as clang compiles it. The checks are in .clang-tidy."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""A 3D page of any result of the FMU, one offline file: ./scripts/view FILE.csv... (docs/page.md)."""
+"""Writes a 3D page of any result of the FMU, one offline file: ./scripts/view FILE.csv... (docs/page.md)."""
 
 from argparse import Namespace
 
