@@ -1,0 +1,204 @@
+"""The second component where the first is tested, and the reverse. What is true along X is so along Y, by a quarter
+turn of the scene: motions, rates, derivatives, model exchange. Each input alone, in each of its derivatives, does the
+work of its power. Moments about e1 and e2 reach the wheel carrier each at its own component.
+"""
+
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+import pytest
+from support.bounds import beyond, within
+
+from wheelfmu.fmu.driver import DERIVATIVES, STATES, Array, FMU2Wheel, Values
+from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.motion import Library
+from wheelfmu.truth.scenes import GENERAL
+from wheelfmu.truth.sliding import ROAD, THROWN
+
+# Variables along X and along Y: after a quarter turn the second is the first, and the first the second, negative.
+PAIRS = [("X_O", "Y_O"), ("X_O_dot", "Y_O_dot"), ("lambda_1", "lambda_2"), ("X_C", "Y_C"), ("F_X", "F_Y")]
+PAIRS += [("X_O_start", "Y_O_start")]
+ODD: Values = {**GENERAL, "psi_dot_start": 0.7, "theta_dot_start": 0.3, "phi_dot_start": -5.0, "phi_start": 0.4}
+PLACE: Values = {"psi_start": 0.3, "slope": 0.2, "slope_direction": 0.5, "X_O_start": 3.0, "Y_O_start": -7.0}
+HUB: Values = {"guided": True, "theta_start": 1.2, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
+SCENES: dict[str, Values] = {
+    "unfolded": {"psi_dot_start": 0.7, "psi_start": 0.3, "X_O_start": 3.0, "Y_O_start": -7.0},
+    "rolls": {**ODD, **PLACE, "s": 0.02},
+    "multibody": {**ODD, **PLACE, "s": 0.02, "formulation": 3},
+    "regularized": {**ODD, **PLACE, "s": 0.02, "friction_law": 2, "omega_s": 0.5},
+    "slides": {**ODD, **PLACE, **ROAD, **THROWN, "s": 0.01},
+    "slides, multibody": {**ODD, **PLACE, **ROAD, **THROWN, "formulation": 3},
+    "steered": {**ODD, **PLACE, **HUB, "psi_dot_guide": 0.5, "theta_dot_guide": -0.2, "s": 0.01},
+    "steered, slides": {**ODD, **PLACE, **HUB, **ROAD, **THROWN, "psi_dot_guide": 0.5, "theta_dot_guide": -0.2},
+}
+each_scene = pytest.mark.parametrize("scene", SCENES)
+LOAD = {"F_X": (3.0, 2.0, -1.0), "F_Y": (-5.0, 1.0, 4.0), "M_1": (0.3, 0.5), "M_2": (-0.4, 0.2), "M_3": (0.5,)}
+
+
+def quarter(names: list[str]) -> Array:
+    """The matrix that leads values of these names to those of the turned scene, but for headings."""
+    matrix = np.eye(len(names))
+    for first, second in PAIRS:
+        if first in names:
+            i, k = names.index(first), names.index(second)
+            matrix[[i, k]] = matrix[[k, i]]
+            matrix[i] *= -1
+    return matrix
+
+
+def turned(values: Values) -> Values:
+    found = {**values, "psi_start": float(values.get("psi_start", pi / 2)) + pi / 2}
+    found["slope_direction"] = float(values.get("slope_direction", 0.0)) + pi / 2
+    for first, second in PAIRS:
+        if first in values:
+            found[first], found[second] = -float(values[second]), values[first]
+    return found
+
+
+def turned_load(load: dict[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
+    return {**load, "F_X": tuple(-c for c in load["F_Y"]), "F_Y": load["F_X"]}
+
+
+def outputs(w: FMU2Wheel) -> list[str]:
+    return [name for name in w.reals if name != "psi"]
+
+
+def both(wheel, scene: str, load=LOAD) -> tuple[FMU2Wheel, FMU2Wheel]:
+    plain = wheel().start(tolerance=1e-11, **SCENES[scene])
+    around = wheel().start(tolerance=1e-11, **turned(SCENES[scene]))
+    return plain.give(load), around.give(turned_load(load))
+
+
+@each_scene
+def test_a_scene_turned_by_a_quarter_moves_so_in_every_output_and_rate(wheel, scene):
+    load = dict.fromkeys(LOAD, (0.0,)) if scene == "unfolded" else LOAD
+    for t in (0.0, 0.1, 0.25):
+        plain, around = both(wheel, scene, load)
+        if t:
+            plain.to(t)
+            around.to(t)
+        names = outputs(plain)
+        found, expected = np.array(around.get(*names)), quarter(names) @ plain.get(*names)
+        size = 1 + np.abs(expected)
+        within(dict(zip(names, np.abs(found - expected) / size, strict=True)), 1e-8, f"off the quarter turn at {t} s")
+        beyond(np.abs((found - plain.get(*names)) / size).max(), 0.1, "distance from the scene that is not turned")
+        rated = [name for name in names if plain.variables[name].causality == "output"]
+        found, expected = np.array(around.rates(rated)()), quarter(rated) @ np.array(plain.rates(rated)())
+        size = 1 + np.abs(expected)
+        within(dict(zip(rated, np.abs(found - expected) / size, strict=True)), 1e-7, f"rate off the turn at {t} s")
+
+
+@each_scene
+def test_derivatives_by_what_points_along_Y_are_those_by_what_points_along_X(wheel, scene):
+    knowns = ["F_X", "F_Y", "M_1", "M_2", "M_3", "F_Z"]
+    plain, around = both(wheel, scene)
+    names = outputs(plain)
+    off = around.jacobian(names, knowns) - quarter(names) @ plain.jacobian(names, knowns) @ quarter(knowns).T
+    within(np.abs(off).max(), 1e-9, "derivatives by inputs off the quarter turn")
+    starts = ["X_O_start", "Y_O_start", "psi_start", "theta_start", "slope", "slope_direction", *knowns]
+    plain = wheel().initializing(**SCENES[scene]).give(LOAD)
+    around = wheel().initializing(**turned(SCENES[scene])).give(turned_load(LOAD))
+    expected = quarter(names) @ plain.jacobian(names, starts) @ quarter(starts).T
+    size = 1 + np.abs(expected).max(axis=1)[:, None]
+    within(
+        np.abs((around.jacobian(names, starts) - expected) / size).max(), 1e-7, "derivatives by parameters, relative"
+    )
+    beyond(np.abs((around.jacobian(names, starts) - plain.jacobian(names, starts)) / size).max(), 0.5, "not turned")
+    own = plain.jacobian(["X_O", "Y_O"], ["X_O_start", "Y_O_start"])
+    within(np.abs(own - np.eye(2)).max(), 1e-9, "derivatives of a place by its own start off one")
+
+
+@pytest.mark.parametrize("scene", ["unfolded", "rolls", "regularized"])
+def test_in_model_exchange_too(library: Library, scene: str) -> None:
+    shift = np.zeros(len(STATES))
+    shift[STATES.index("psi")] = pi / 2
+    push = {name: row[0] for name, row in LOAD.items()}
+    unknowns = [*DERIVATIVES, "lambda_1", "lambda_2", "lambda_3", "X_C", "Y_C", "lambda_x", "lambda_y", "E"]
+    states, loads = list(STATES), ["F_X", "F_Y", "M_1", "M_2"]
+    with exchange(library, **SCENES[scene]) as plain, exchange(library, **turned(SCENES[scene])) as around:
+        turn = quarter(states)
+        for k in range(4):
+            x = plain.x() + 0.05 * k * plain.derivatives()
+            plain.place(0.1 * k, x)
+            around.place(0.1 * k, turn @ x + shift)
+            plain.put(**push)
+            around.put(**{name: row[0] for name, row in turned_load(LOAD).items()})
+            off = around.derivatives() - quarter(list(DERIVATIVES)) @ plain.derivatives()
+            within(np.abs(off).max(), 1e-10, "derivatives off the quarter turn")
+            within(np.abs(around.indicators() - plain.indicators()).max(), 1e-10, "indicators off the quarter turn")
+            for known in (states, loads):
+                off = around.jacobian(unknowns, known) - quarter(unknowns) @ plain.jacobian(unknowns, known) @ (
+                    quarter(known).T
+                )
+                within(np.abs(off).max(), 1e-8, "directional derivatives off the quarter turn")
+        for name in states:  # each state by its own name
+            (value,) = around.get(name)
+            around.put(**{name: value + 0.01})
+            assert around.x()[states.index(name)] == value + 0.01
+            assert np.count_nonzero(around.x() - np.array(around.get(*states))) == 0
+
+
+# ---- each input alone ----
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+SPEEDS = ("X_O_dot", "Y_O_dot", "Z_O_dot", "theta_dot", "psi_dot", "omega_z", "theta")
+LOADS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
+CUBIC = (0.8, -2.0, 3.0, -1.5)
+
+
+def power(w: FMU2Wheel, load: str, value: float) -> float:
+    X, Y, Z, tilt, turn, spin, theta = w.get(*SPEEDS)
+    return value * (X, Y, Z, tilt, turn * np.sin(theta), spin)[LOADS.index(load)]
+
+
+@pytest.mark.parametrize("formulation", [2, 3])
+@pytest.mark.parametrize("order", range(4))
+@pytest.mark.parametrize("load", LOADS)
+def test_each_input_alone_in_each_of_its_derivatives_does_the_work_of_its_power(wheel, load, order, formulation):
+    """A leaning wheel that rolls without friction, J_x != J_y."""
+    w = wheel().start(tolerance=1e-11, **ODD, slope=0.1, formulation=formulation)
+    first, work, moved = w.get("E")[0], 0.0, 0.0
+    shape = [0.0] * 4
+    shape[order] = (20 if load.startswith("F") else 5) * CUBIC[order]
+    for begin, end in pairwise(np.linspace(0, 0.5, 9)):
+        for node, weight in zip(NODES, WEIGHTS, strict=True):
+            t = begin + 0.5 * (1 + node) * (end - begin)
+            w.give({load: tuple(shape)}, w.time).to(t)
+            part = 0.5 * (end - begin) * weight * power(w, load, shape[order] * t**order)
+            work, moved = work + part, moved + abs(part)
+        w.give({load: tuple(shape)}, w.time).to(float(end))
+    within(abs(w.get("E")[0] - first - work), 1e-8, "energy off the work, J")
+    beyond(moved, 1e-3, "work, J")
+
+
+@pytest.mark.parametrize("scene", ["steered", "steered, slides"])
+def test_a_moment_across_the_axle_of_a_guided_wheel_is_the_carriers_at_the_same_component(wheel, scene):
+    """Of M_1 and M_2 the carrier gives the opposite, and nothing else is moved."""
+    names = [name for name in wheel().reals if not name.startswith("M_guide")]
+    plain = wheel().start(**SCENES[scene]).to(0.05)
+    for k in (1, 2):
+        w = wheel().start(**SCENES[scene]).put(**{f"M_{k}": 3.0}).to(0.05)
+        difference = np.subtract(w.get("M_guide_1", "M_guide_2"), plain.get("M_guide_1", "M_guide_2"))
+        expected = np.zeros(2)
+        expected[k - 1] = -3.0
+        within(np.abs(difference - expected).max(), 1e-7, f"moments of the carrier off -M_{k}, N m")
+        within(np.abs(np.subtract(w.get(*names), plain.get(*names))).max(), 1e-6, "all else")
+        slopes = w.jacobian(["M_guide_1", "M_guide_2"], ["M_1", "M_2"])
+        within(np.abs(slopes + np.eye(2)).max(), 1e-9, "derivatives off minus one")
+
+
+def test_a_carrier_that_leans_and_one_that_steers_give_each_its_own_angle_its_derivatives_and_moments(wheel):
+    """theta and psi are the integrals of their own polynomials; at a standstill M_guide is dH/dt less the weight's."""
+    shapes = {"psi_dot_guide": (0.4, 0.5, -0.3, 0.2), "theta_dot_guide": (-0.2, 0.3, 0.4, -0.1)}
+    w = wheel().start(tolerance=1e-12, guided=True, theta_start=1.3, psi_start=0.2, phi_dot_start=-4.0, **GENERAL)
+    for t in (0.1, 0.25, 0.4, 0.7):
+        w.give(shapes, w.time).to(t)
+        for name, begin in (("psi", 0.2), ("theta", 1.3)):
+            c = shapes[f"{name}_dot_guide"]
+            within(abs(w.get(name)[0] - begin - sum(c[k] * t ** (k + 1) / (k + 1) for k in range(4))), 1e-11, name)
+            within(abs(w.get(f"{name}_dot")[0] - sum(c[k] * t**k for k in range(4))), 1e-11, f"{name}_dot")
+            w.give(shapes, t)
+            found = w.get(f"{name}_ddot")[0]
+            within(abs(found - sum(k * c[k] * t ** (k - 1) for k in range(1, 4))), 1e-10, f"{name}_ddot")
+    assert w.get("psi_dot")[0] != w.get("theta_dot")[0]
