@@ -126,7 +126,7 @@ class Host:
 STARTS: dict[str, Values] = {name: KINDS[name] for name in ("free", "sliding, stiff law", "multibody, bdf", "adams")}
 STARTS |= {"tiny": {"X_O_start": 1e-310, "psi_dot_start": -1e-310, "Y_O_start": 3e-308}}
 STARTS |= {"refused": {"m": -1 / 3, "omega_s": -0.1}, "ends": {"mu_max": 0.45, "s": 1e-310}}
-SCENES = KINDS | {f"slides: {name}": scene.start for name, scene in SLIDES.items() if name != "jams"}
+SCENES = KINDS | {f"slides: {name}": scene.start for name, scene in SLIDES.items()}
 SCENES |= {str(kind): {**kind, "s": 0.02, "M_brake": 0.5} for kind in FORCED}
 SCENES |= {"weightless": {"g": 0.0, "s": 0.01, "M_3": 4.0, "F_Z": -9.0, "keep_contact": True}}
 KNOWNS, UNKNOWNS = ("M_2", "F_Y"), ("lambda_1", "psi_ddot", "X_O", "mu_required")
