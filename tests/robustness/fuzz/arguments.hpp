@@ -60,8 +60,8 @@ inline double value_for(unsigned reference, Bytes& in) {
     return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
   if (in.chance(2)) return 0;
-  const Row& row = row_of(reference);
-  const double size = row.role == Role::input ? 10 : row.start == 0 ? 0.1 : row.start;
+  const double start = row_of(reference).start;
+  const double size = reference >= ref_first_input ? 10 : start == 0 ? 0.1 : start;
   const double value = size * in.factor();
   return in.chance(4) ? -value : value;
 }

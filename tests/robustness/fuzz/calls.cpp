@@ -60,7 +60,6 @@ void Session::set_up_experiment() {
   if (now_->model.state != instantiated) return;
   expect((status == fmi2Error) == !sound, "only a sound experiment is accepted");
   if (status == fmi2Error) return;
-  now_->model.tolerance = has_tolerance ? std::clamp(tolerance, 1e-13, 1e-4) : 1e-8;
   now_->model.has_stop = has_stop;
   now_->model.stop = stop;
 }
@@ -74,7 +73,7 @@ void Session::exit_initialization() {
   const fmi2Status status = call(M | may_fail, fmi2ExitInitializationMode);
   if (!legal) return;
   now_->model.state = status == fmi2OK ? step_complete : error;
-  if (status == fmi2OK) check_after_start(*now_);
+  if (status == fmi2OK) check_finite(readings(*now_));
 }
 
 // From wherever the instance is to step complete, if its parameters allow.
@@ -119,7 +118,7 @@ fmi2Status Session::step(Slot& slot, double t, double h) {
   const double reached = time_of(slot.component), rounding = 1e-8 * (std::fabs(t) + h);
   expect(reached >= t - rounding && reached <= t + h + rounding, "the time reached lies within the step");
   expect(status == fmi2Discard || reached >= t + h - rounding, "an accepted step reaches its end");
-  check_after_step(slot);
+  check_finite(readings(slot));
   return status;
 }
 
@@ -156,14 +155,6 @@ void Session::with_drawn(unsigned legal_in, fmi2Status (*function)(fmi2Component
   const std::tuple<Parameters...> drawn{arguments.draw<Parameters>()...};
   const fmi2Status status = std::apply([&](auto... each) { return call(legal_in, function, each...); }, drawn);
   if (status != fmi2OK) return;
-  if constexpr ((std::is_same_v<Parameters, const double*> || ...)) {
-    constexpr bool derivatives = (std::is_same_v<Parameters, const int*> || ...);  // their orders
-    if (legal_in == settable && (derivatives || now_->model.state == step_complete))
-      for (const double value : arguments.reals()) {
-        Model& model = now_->model;
-        model.free = model.free && value == 0 && model.level;
-      }
-  }
   if (legal_in & finite)
     for (const double value : arguments.reals()) expect(std::isfinite(value), "a derivative is finite");
 }

@@ -21,17 +21,12 @@ enum : unsigned {
 constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_theta_ddot - ref_first_output;
 
 enum class Type { real, integer, boolean };
-enum class Role { parameter, tunable, input, output, local };
-// A row of modelDescription.xml; start and limits of what can be set.
+// A row of modelDescription.xml; the start value of what can be set.
 struct Row {
   Type type;
-  Role role;
-  double start = 0, min = 0, max = 0;
+  double start = 0;
 };
 const Row& row_of(unsigned reference);
-
-// Whether a value other than zero may change the energy: an input, or a parameter that can only switch something on.
-bool may_do_work(unsigned reference);
 
 // Call states of FMI 2.0.5, section 4.2.4.
 enum State : unsigned { instantiated, initialization, step_complete, step_failed, terminated, error };
@@ -44,12 +39,8 @@ constexpr unsigned may_fail = 1u << 16, finite = 1u << 17;
 // What the harness knows of an instance; saved and restored together with the FMU's own state.
 struct Model {
   State state = instantiated;
-  bool free = true;   // neither inputs, friction nor another slope since the start: the energy stays
-  bool level = true;  // at the start
   bool has_stop = false;
-  double stop = 0, tolerance = 1e-8;
-  double start_energy = 0;  // J, at the end of initialization
-  double energy_scale = 0;  // J
+  double stop = 0;
 };
 
 struct Slot {
@@ -85,8 +76,7 @@ std::vector<double> readings(const Slot& slot);
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 
 double time_of(fmi2Component component);
-void check_after_start(Slot& slot);
-void check_after_step(const Slot& slot);
+void check_finite(const std::vector<double>& values);
 
 // One call: illegal ones must fail, say why and change nothing; so must legal ones that report an error, unless
 // legal_in has `may_fail`: doStep and the end of initialization lead to the error state.
