@@ -150,11 +150,11 @@ def tilts() -> Iterator[Case]:
 
 
 def frictions() -> Iterator[Case]:
-    yield Case("friction", "the paper's, s = 0.03 m", {"s": 0.03}, 10.0, judges=CHECKED, samples=10000)
-    usual = {"judges": CHECKED, "samples": 4000}
-    yield from (Case("friction", f"s = {s:g} m", {"s": s}, 5.0, **usual) for s in (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1))
-    large = {"judges": (("energy", 1e3), ("fixed", 0.0), ("reference", 1e5)), "samples": 20000}
-    yield from (Case("friction", f"s = {s:g} m", {"s": s}, 5.0, **large) for s in (1.0, 10.0))
+    yield Case("friction", "the paper's, s = 0.03 m", {"s": 0.03}, 10.0, judges=CHECKED)
+    for s in (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1):
+        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=CHECKED)
+    for s in (1.0, 10.0):
+        yield Case("friction", f"s = {s:g} m", {"s": s}, 5.0, judges=(*ROLLING, ("reference", 1e5)))
 
 
 def sticking() -> Iterator[Case]:
@@ -163,14 +163,14 @@ def sticking() -> Iterator[Case]:
     held = accelerations(PAPER, (PI / 2, start["theta_start"], 0.0), rates, sigma=None)
     edge = abs(held.tau) / held.lambda_3
     group = "omega_z = 0 at the start"
-    yield Case(group, "at rest: sticks and falls", {**resting(75.0), "s": 0.03}, 2.0, fall(75.0), CHECKED, 2000)
+    yield Case(group, "at rest: sticks and falls", {**resting(75.0), "s": 0.03}, 2.0, fall(75.0), CHECKED)
     for name, s in (("sticks", 2 * edge), ("released at once", edge / 2), ("on the edge |tau| = s N", edge)):
-        yield Case(group, f"{name}, s = {s:.4g} m", {**start, "s": s}, 5.0, judges=CHECKED, samples=5000)
+        yield Case(group, f"{name}, s = {s:.4g} m", {**start, "s": s}, 5.0, judges=CHECKED)
 
 
 def shapes() -> Iterator[Case]:
     yield Case("shape", "thin disc r = 0", {"r": 0.0}, judges=(*FREE, ("reference", 1e3)))
-    yield Case("shape", "thin disc with friction", {"r": 0.0, "s": 0.03}, 5.0, judges=CHECKED, samples=5000)
+    yield Case("shape", "thin disc with friction", {"r": 0.0, "s": 0.03}, 5.0, judges=CHECKED)
     yield Case("shape", "r = 100 r_0", {"r": 30.0, "J_x": 9e3, "J_y": 9e3, "J_z": 9e3})
     for r_0 in (1e-3, 1e3):
         scale = r_0 / PAPER.r_0
@@ -188,12 +188,12 @@ def inertias() -> list[Case]:
         Case("inertia", "the paper's: the limit J_z = J_x + J_y", judges=(*FREE, ("reference", 1e3))),
         Case("inertia", "nearly spherical, 1e-9", {"J_x": 1.0, "J_y": 1.0, "J_z": 1 + 1e-9}),
         Case("inertia", "J_x, J_y differ by 1e-12", {"J_y": 0.9 * (1 - 1e-12)}, judges=FREE),
-        Case("inertia", "... with friction", {"J_y": 0.9 * (1 - 1e-12), "s": 0.03}, 5.0, judges=CHECKED, samples=5000),
+        Case("inertia", "... with friction", {"J_y": 0.9 * (1 - 1e-12), "s": 0.03}, 5.0, judges=CHECKED),
         Case("inertia", "J_x = 2 J_y", double, 5.0, judges=general),
         Case("inertia", "J_x = J_y + J_z", limit, 5.0, judges=energy),
-        Case("inertia", "J_x = 2 J_y, friction", {**double, "s": 0.03}, 5.0, judges=CHECKED, samples=5000),
+        Case("inertia", "J_x = 2 J_y, friction", {**double, "s": 0.03}, 5.0, judges=CHECKED),
         Case("inertia", "multibody, the paper's wheel", {"formulation": "multibody"}, judges=FREE),
-        Case("inertia", "multibody, friction", {"formulation": "multibody", "s": 0.03}, judges=CHECKED, samples=10000),
+        Case("inertia", "multibody, friction", {"formulation": "multibody", "s": 0.03}, judges=CHECKED),
     ]
 
 
@@ -217,11 +217,10 @@ def lift_offs() -> Iterator[Case]:
         name = f"light wheel rolling at {-spin:g} rad/s, s = {s:g} m"
         ended = Scene(rolling, 2.0).solved([0.0, 2.0], rtol=1e-12).ended
         expected = Expectation("lifts", ended.time) if ended else Expectation()
-        yield Case("lift-off", name, rolling, 2.0, expected, CHECKED, 4000)
+        yield Case("lift-off", name, rolling, 2.0, expected, CHECKED)
     pulled = {**inertia(sphere(0.1)), "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
     name, remark = "contact kept with friction, s = 0.03 m", "a ground that pulls has no rolling friction"
-    judges = (("fixed", 0.0), ("reference", 1e3))  # no energy: the mode does not show where the ground pulls
-    yield Case("lift-off", name, pulled, 0.9, judges=judges, samples=2000, remark=remark)
+    yield Case("lift-off", name, pulled, 0.9, judges=CHECKED, remark=remark)
     for name, force in (("just leaves", -1e-6), ("just stays", 1e-6)):
         wheel = grazing(force)
         ending = Expectation("lifts", fall_lift_off(wheel, THETA_0)) if force < 0 else fall(75.0, wheel)
