@@ -13,13 +13,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from fmpy import extract
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
 from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
-from wheelfmu.fmu.trust import DEFAULT, REPEATS, Wheel, trust
+from wheelfmu.truth.trust import DEFAULT, REPEATS, Wheel, trust
 
 BESIDE = 0.06  # decades: marks that are closer are one
 LEAST = 1e-14  # of the range: what is drawn for less
@@ -137,8 +138,8 @@ def main(folder: Path, given: dict[str, str]) -> None:
     r_0, r, g = (float(given.get(name, variables("parameter")[name].start)) for name in ("r_0", "r", "g"))
     fall = np.sqrt(g / (r_0 + r))  # rad/s
     scales = np.array([r_0 + r, 1.0, fall, fall])
-    with TemporaryDirectory() as unpacked:
-        wheel = Wheel(ROOT / "wheel.fmu", unpacked)
+    with TemporaryDirectory() as folder_of_fmu:
+        wheel = Wheel(extract(str(ROOT / "wheel.fmu"), folder_of_fmu))
         for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
             start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
             truth = wheel.judge(start, times)

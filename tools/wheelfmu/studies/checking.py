@@ -1,6 +1,6 @@
 """Whether the results of a study can be trusted: some of its wheels again by another solver, at the tightest tolerance.
 
-CVODE's Adams, or DOP853 for wheels that run by CVODE: wheelfmu.fmu.trust."""
+CVODE's Adams, or DOP853 for wheels that run by CVODE: wheelfmu.truth.trust."""
 
 import math
 from dataclasses import replace
@@ -11,7 +11,9 @@ import numpy as np
 import xarray as xr
 from fmpy import extract
 
-from wheelfmu.fmu.trust import ADAMS, BDF, DIGITS, HEADLINE, RUNGE_KUTTA, TIGHTEST, differences
+from wheelfmu.fmu.driver import HEADLINE
+from wheelfmu.truth.errors import by_instant
+from wheelfmu.truth.trust import ADAMS, BDF, DIGITS, RUNGE_KUTTA, TIGHTEST
 
 from .dataset import axes_of, points
 from .plan import Study
@@ -39,7 +41,7 @@ def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int
         rows, truth = (np.column_stack([run[name][k] for name in HEADLINE]) for run in runs)
         there = np.isfinite(rows[:, 0] + truth[:, 0])  # until the earlier end of both
         if there.any():
-            error[wheel] = differences(rows[there], truth[there]).max()
+            error[wheel] = by_instant(rows[there], truth[there]).max()
             shift[wheel] = runs[0]["end_time"][k] - runs[1]["end_time"][k]
     columns = {"check_error": (error, "1", ERROR), "check_shift": (shift, "s", SHIFT)}
     about = {

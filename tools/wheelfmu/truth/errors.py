@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Errors = dict[str, float]  # by variable
+LEVEL = 1e-9  # of a column's scale: less is no range
 Columns = Mapping[str, NDArray]
 KINDS = (
     ("X_O", "Y_O", "Z_O"),
@@ -32,7 +33,14 @@ def over_range(found: NDArray, expected: NDArray) -> float:
     rows, or none."""
     if found.shape != expected.shape or not np.isfinite(found).all():
         return np.inf
-    return float((np.abs(found - expected).max(axis=0) / np.ptp(expected, axis=0)).max())
+    return float(by_instant(found, expected, 0.0).max())
+
+
+def by_instant(found: NDArray, expected: NDArray, scales: NDArray | float = 1.0) -> NDArray:
+    """At each instant the largest error of a column, relative to its range, or to its scale where it has hardly any."""
+    span = np.ptp(expected, axis=0)
+    errors = np.abs(found - expected) / np.where(span > LEVEL * scales, span, scales)
+    return errors.reshape(len(found), -1).max(axis=1)
 
 
 def kind_errors(found: Columns, expected: Columns, least: float = 0.0) -> Errors:
