@@ -174,23 +174,18 @@ struct Solution {
 // A ground that pulls has no friction: only the brake's part is left.
 Solution solve(const Instant& now, bool pulls) {
   const Multibody& s = now.s;
-  const double mu = pulls ? 0 : now.scene.mu_slide;
-  Vector9 column = now.column;
-  if (now.scene.friction.kind == WHEEL_HELD) {  // tau is found from omega_z_dot = 0, linearly
-    Matrix9 matrix = system_matrix(now, 0, mu);
-    if (now.scene.guided) guide(now.scene.load, matrix, column);
-    const Eigen::PartialPivLU<Matrix9> K(matrix);
-    const Vector9 free = K.solve(column), unit = K.solve(Vector9::Unit(about_axle));
-    const double compliance = s.Q.row(2).dot(unit.segment<3>(3)), tau = -omega_z_dot(s, free) / compliance;
-    return {free + unit * tau, tau, now.slides ? K.determinant() * compliance : 0};
-  }
-  // tau = -(s N + brake) kappa
   const double kappa = wheel_kappa(&now.scene.friction, s.omega_z), brake = now.scene.load.brake;
-  column[about_axle] -= brake * kappa;
-  Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, mu);
+  Vector9 column = now.column;
+  column[about_axle] -= brake * kappa;  // tau = -(s N + brake) kappa
+  Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, pulls ? 0 : now.scene.mu_slide);
   if (now.scene.guided) guide(now.scene.load, matrix, column);
   const Eigen::PartialPivLU<Matrix9> K(matrix);
   const Vector9 unknowns = K.solve(column);
+  if (now.scene.friction.kind == WHEEL_HELD) {  // tau is found from omega_z_dot = 0, linearly; kappa = 0
+    const Vector9 unit = K.solve(Vector9::Unit(about_axle));
+    const double compliance = s.Q.row(2).dot(unit.segment<3>(3)), tau = -omega_z_dot(s, unknowns) / compliance;
+    return {unknowns + unit * tau, tau, now.slides ? K.determinant() * compliance : 0};
+  }
   const double tau = kappa == 0 ? 0 : -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa;
   return {unknowns, tau, now.slides ? K.determinant() : 0};
 }

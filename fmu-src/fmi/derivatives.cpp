@@ -38,7 +38,7 @@ bool check_all(const Instance& i, const fmi2ValueReference v[], std::size_t n, F
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                        const fmi2Integer orders[], const fmi2Real values[]) {
-  return guarded(c, legality::set_input_derivatives, "fmi2SetRealInputDerivatives", [=](Instance& i) {
+  return guarded(c, legality::set_input_derivatives, [=](Instance& i) {
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
     if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
@@ -55,7 +55,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference v[], size_t n,
                                         const fmi2Integer orders[], fmi2Real values[]) {
-  return guarded(c, legality::get_output_derivatives, "fmi2GetRealOutputDerivatives", [=](Instance& i) {
+  return guarded(c, legality::get_output_derivatives, [=](Instance& i) {
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
     if (!check_all(i, v, n, is_real_output, "a real output")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
@@ -71,7 +71,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t n_unknowns,
                                         const fmi2ValueReference knowns[], size_t n_knowns, const fmi2Real seeds[],
                                         fmi2Real values[]) {
-  return guarded(c, legality::get_values, "fmi2GetDirectionalDerivative", [=](Instance& i) {
+  return guarded(c, legality::get_values, [=](Instance& i) {
     if (!i.check_arrays(n_unknowns, unknowns, values) || !i.check_arrays(n_knowns, knowns, seeds)) return fmi2Error;
     const auto known = [&](fmi2ValueReference v) { return is_known(i, v); };
     if (!check_all(i, knowns, n_knowns, known, "an input")) return fmi2Error;

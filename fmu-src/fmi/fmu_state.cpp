@@ -35,19 +35,19 @@ Snapshot* allocate(fmi2FMUstate* state, std::size_t size) {
 constexpr const char *null_pointer = "the state, the size or the bytes are a null pointer",
                      *unknown_state = "this FMU did not create the state", *no_memory = "out of memory";
 
-// A call that reads a state; `complete`: its other arguments are no null pointers. The body returns what is wrong.
+// (state, its other arguments are no null pointers, body) => a call that reads a state; the body returns what is wrong.
 template <class Body>
-fmi2Status with_state(fmi2Component c, const char* name, fmi2FMUstate state, bool complete, Body body) {
-  return guarded(c, legality::always, name, [=](Instance& i) {
+auto with_state(fmi2FMUstate state, bool complete, Body body) {
+  return [=](Instance& i) {
     auto* const snapshot = handle_of<Snapshot>(state);
     return !state || !complete ? null_pointer : snapshot ? body(i, *snapshot) : unknown_state;
-  });
+  };
 }
 
 }  // namespace
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, legality::always, "fmi2GetFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, [=](Instance& i) {
     if (!state) return null_pointer;
     Snapshot* snapshot = allocate(state, wheel::state_size(i.wheel));
     if (!snapshot) return no_memory;
@@ -57,13 +57,14 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return with_state(c, "fmi2SetFMUstate", state, true, [](Instance& i, Snapshot& snapshot) {
+  const auto load = [](Instance& i, Snapshot& snapshot) {
     return wheel::load_state(i.wheel, snapshot.bytes(), snapshot.size);
-  });
+  };
+  return guarded(c, legality::always, with_state(state, true, load));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return guarded(c, legality::always, "fmi2FreeFMUstate", [=](Instance&) {
+  return guarded(c, legality::always, [=](Instance&) {
     auto* const snapshot = state ? handle_of<Snapshot>(*state) : nullptr;
     if (!snapshot) return;
     fmi::release(snapshot);
@@ -72,22 +73,24 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return with_state(c, "fmi2SerializedFMUstateSize", state, size, [=](Instance&, Snapshot& snapshot) {
+  const auto measure = [=](Instance&, Snapshot& snapshot) {
     *size = snapshot.size;
     return no_fault;
-  });
+  };
+  return guarded(c, legality::always, with_state(state, size, measure));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return with_state(c, "fmi2SerializeFMUstate", state, bytes, [=](Instance&, Snapshot& snapshot) {
+  const auto copy = [=](Instance&, Snapshot& snapshot) {
     if (size < snapshot.size) return "the array is shorter than the state";
     std::memcpy(bytes, snapshot.bytes(), snapshot.size);
     return no_fault;
-  });
+  };
+  return guarded(c, legality::always, with_state(state, bytes, copy));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
-  return guarded(c, legality::always, "fmi2DeSerializeFMUstate", [=](Instance& i) {
+  return guarded(c, legality::always, [=](Instance& i) {
     if (!state || !bytes) return null_pointer;
     const char* fault = wheel::fault_of(i.wheel.demand.kind, reinterpret_cast<const unsigned char*>(bytes), size);
     Snapshot* snapshot = fault ? nullptr : allocate(state, size);

@@ -97,9 +97,10 @@ struct Instance final : Handle, wheel::Reporter {
 inline constexpr const char* no_fault = nullptr;
 
 // Every call on an instance: one of this library, not from within its logger, legal in its state. An illegal call
-// changes nothing. The body returns a status, or what is wrong; one without a result cannot fail.
+// changes nothing. The body returns a status, or what is wrong; one without a result cannot fail. `name` is that of the
+// calling function.
 template <class Body>
-fmi2Status guarded(fmi2Component component, const Rule& rule, const char* name, Body&& body) {
+fmi2Status guarded(fmi2Component component, const Rule& rule, Body&& body, const char* name = __builtin_FUNCTION()) {
   auto* const instance = handle_of<Instance>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;

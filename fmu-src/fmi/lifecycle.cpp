@@ -67,13 +67,13 @@ void fmi2FreeInstance(fmi2Component c) {
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
-  return guarded(c, legality::always, "fmi2SetDebugLogging",
+  return guarded(c, legality::always,
                  [&](Instance& i) { return switch_logging(i, on != fmi2False, count, categories); });
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-  return guarded(c, legality::before_initialization, "fmi2SetupExperiment", [&](Instance& i) {
+  return guarded(c, legality::before_initialization, [&](Instance& i) {
     if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
       return i.log(Topic::error,
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
@@ -85,19 +85,19 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, legality::before_initialization, "fmi2EnterInitializationMode",
+  return guarded(c, legality::before_initialization,
                  [](Instance& i) { i.wheel.run.phase = wheel::Phase::initializing; });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return guarded(c, legality::exit_initialization, "fmi2ExitInitializationMode",
+  return guarded(c, legality::exit_initialization,
                  [](Instance& i) { return wheel::start(i.wheel) ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  return guarded(c, legality::terminate, "fmi2Terminate", [](Instance& i) { wheel::close(i.wheel); });
+  return guarded(c, legality::terminate, [](Instance& i) { wheel::close(i.wheel); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  return guarded(c, legality::always, "fmi2Reset", [](Instance& i) { wheel::reset(i.wheel); });
+  return guarded(c, legality::always, [](Instance& i) { wheel::reset(i.wheel); });
 }

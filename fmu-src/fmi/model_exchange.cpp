@@ -20,37 +20,36 @@ bool are_finite(const double* values, std::size_t count) {
 }
 
 // Reads as many numbers as are needed, in initialization mode from the start values; Discard where they are not finite.
-fmi2Status read_numbers(fmi2Component c, const char* name, fmi2Real values[], std::size_t count, int needed,
-                        const char* what, void (*read)(Wheel&, double*)) {
-  return guarded(c, legality::get_states, name, [=](Instance& i) {
+auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* what, void (*read)(Wheel&, double*)) {
+  return [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
     if (!wheel::is_prepared(i.wheel) || !has_state(i.wheel.run.phase)) return fmi2Discard;
     read(i.wheel, values);
     if (are_finite(values, count)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.wheel.time(), what);
-  });
+  };
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
-fmi2Status enter(fmi2Component c, const fmi::Rule& rule, const char* name, Phase mode) {
-  return guarded(c, rule, name, [=](Instance& i) {
+auto enter(Phase mode) {
+  return [=](Instance& i) {
     if (i.wheel.run.phase != Phase::ended) i.wheel.run.phase = mode;
-  });
+  };
 }
 
 }  // namespace
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return enter(c, legality::while_integrating, "fmi2EnterEventMode", Phase::event_mode);
+  return guarded(c, legality::while_integrating, enter(Phase::event_mode));
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return enter(c, legality::enter_continuous_time, "fmi2EnterContinuousTimeMode", Phase::continuous_time);
+  return guarded(c, legality::enter_continuous_time, enter(Phase::continuous_time));
 }
 
 // One pass is enough: the law that is decided holds.
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
-  return guarded(c, legality::new_discrete_states, "fmi2NewDiscreteStates", [=](Instance& i) {
+  return guarded(c, legality::new_discrete_states, [=](Instance& i) {
     if (!info) return "the event info is a null pointer";
     *info = {};
     info->valuesOfContinuousStatesChanged = wheel::decide(i.wheel) ? fmi2True : fmi2False;
@@ -61,7 +60,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
-  return guarded(c, legality::while_integrating, "fmi2CompletedIntegratorStep", [=](Instance& i) {
+  return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!enter_event_mode || !terminate) return "a result is a null pointer";
     *enter_event_mode = wheel::has_event(i.wheel) ? fmi2True : fmi2False;
     *terminate = fmi2False;
@@ -70,7 +69,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
-  return guarded(c, legality::set_time, "fmi2SetTime", [=](Instance& i) {
+  return guarded(c, legality::set_time, [=](Instance& i) {
     if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", t);
     wheel::Run& run = i.wheel.run;
     run.t = run.y_time = t - i.wheel.demand.start_time;
@@ -79,7 +78,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  return guarded(c, legality::while_integrating, "fmi2SetContinuousStates", [=](Instance& i) {
+  return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
     std::copy_n(x, n, i.wheel.run.y);
@@ -88,17 +87,19 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetContinuousStates", x, n, wheel::state_count, "states", wheel::states);
+  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "states", wheel::states));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return read_numbers(c, "fmi2GetNominalsOfContinuousStates", x, n, wheel::state_count, "nominals", wheel::nominals);
+  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "nominals", wheel::nominals));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
-  return read_numbers(c, "fmi2GetDerivatives", x_dot, n, wheel::state_count, "derivatives", wheel::derivatives);
+  return guarded(c, legality::get_states,
+                 read_numbers(x_dot, n, wheel::state_count, "derivatives", wheel::derivatives));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return read_numbers(c, "fmi2GetEventIndicators", z, n, wheel::indicator_count(), "indicators", wheel::indicators);
+  return guarded(c, legality::get_states,
+                 read_numbers(z, n, wheel::indicator_count(), "indicators", wheel::indicators));
 }

@@ -38,21 +38,20 @@ constexpr long long no_status = 0x100000000;  // beyond what a caller can pass
 // Each function has one kind of status and answers every other kind with Discard, numbers outside of the enumeration
 // too, which cannot be read as its type.
 template <class Value, class Read>
-fmi2Status get_status(fmi2Component c, const char* name, const fmi2StatusKind& asked, long long known_kind,
-                      Value* value, Read read) {
+auto get_status(const fmi2StatusKind& asked, long long known_kind, Value* value, Read read) {
   const int kind = std::bit_cast<int>(asked);
-  return guarded(c, legality::get_status, name, [=](Instance& i) {
+  return [=](Instance& i) {
     if (!value) return i.log(Topic::error, "%s: the value is a null pointer.");
     if (kind != known_kind) return i.log(Topic::discard, "%s: there is no status of kind %d.", kind);
     *value = read(i);
     return fmi2OK;
-  });
+  };
 }
 
 }  // namespace
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
-  return guarded(c, legality::do_step, "fmi2DoStep", [=](Instance& i) {
+  return guarded(c, legality::do_step, [=](Instance& i) {
     if (!check_step(i, t, h)) return fmi2Error;
     const solver::Outcome outcome = wheel::advance(i.wheel, t + h - i.wheel.demand.start_time);
     if (outcome == solver::Outcome::failed) return fmi2Error;
@@ -61,28 +60,28 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-  return guarded(c, legality::cancel_step, "fmi2CancelStep", [](Instance&) { return fmi2Error; });
+  return guarded(c, legality::cancel_step, [](Instance&) { return fmi2Error; });
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
-  return get_status(c, "fmi2GetStatus", kind, fmi2DoStepStatus, value,
-                    [](Instance& i) { return i.wheel.has_ended() ? fmi2Discard : fmi2OK; });
+  const auto read = [](Instance& i) { return i.wheel.has_ended() ? fmi2Discard : fmi2OK; };
+  return guarded(c, legality::get_status, get_status(kind, fmi2DoStepStatus, value, read));
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
-  return get_status(c, "fmi2GetRealStatus", kind, fmi2LastSuccessfulTime, value,
-                    [](Instance& i) { return i.wheel.time(); });
+  const auto read = [](Instance& i) { return i.wheel.time(); };
+  return guarded(c, legality::get_status, get_status(kind, fmi2LastSuccessfulTime, value, read));
 }
 
 fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
-  return get_status(c, "fmi2GetIntegerStatus", kind, no_status, value, [](Instance&) { return 0; });
+  return guarded(c, legality::get_status, get_status(kind, no_status, value, [](Instance&) { return 0; }));
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
-  return get_status(c, "fmi2GetBooleanStatus", kind, fmi2Terminated, value,
-                    [](Instance& i) { return i.wheel.has_ended() ? fmi2True : fmi2False; });
+  const auto read = [](Instance& i) { return i.wheel.has_ended() ? fmi2True : fmi2False; };
+  return guarded(c, legality::get_status, get_status(kind, fmi2Terminated, value, read));
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
-  return get_status(c, "fmi2GetStringStatus", kind, fmi2PendingStatus, value, [](Instance&) { return ""; });
+  return guarded(c, legality::get_status, get_status(kind, fmi2PendingStatus, value, [](Instance&) { return ""; }));
 }

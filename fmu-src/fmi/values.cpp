@@ -30,15 +30,14 @@ Value represented(double value) {
 }
 
 template <class Value>
-fmi2Status get(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
-               Value values[]) {
-  return guarded(c, legality::get_values, name, [=](Instance& i) {
+auto get(Type type, const fmi2ValueReference variables[], std::size_t count, Value values[]) {
+  return [=](Instance& i) {
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     const fmi2Status status = i.prepare_reading(variables, count);
     for (std::size_t k = 0; k < count && status == fmi2OK; ++k)
       values[k] = represented<Value>(wheel::value_of(i.wheel, variables[k]));
     return status;
-  });
+  };
 }
 
 // Parameters before the run, inputs and the road at any time, the states while another solver moves them.
@@ -72,9 +71,8 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
 }
 
 template <class Value>
-fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueReference variables[], std::size_t count,
-               const Value values[]) {
-  return guarded(c, legality::set_values, name, [=](Instance& i) {
+auto set(Type type, const fmi2ValueReference variables[], std::size_t count, const Value values[]) {
+  return [=](Instance& i) {
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_settable(i, variables[k])) return fmi2Error;
@@ -82,41 +80,38 @@ fmi2Status set(fmi2Component c, const char* name, Type type, const fmi2ValueRefe
       if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
     for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, variables[k], static_cast<double>(values[k]));
     return fmi2OK;
-  });
+  };
 }
 
 // Only an empty request can be answered.
-fmi2Status check_strings(fmi2Component c, const fmi::Rule& rule, const char* name, const fmi2ValueReference variables[],
-                         std::size_t count, const void* values) {
-  return guarded(c, rule, name, [=](Instance& i) {
-    return check_variables(i, Type::string, variables, count, values) ? fmi2OK : fmi2Error;
-  });
+auto check_strings(const fmi2ValueReference variables[], std::size_t count, const void* values) {
+  return [=](Instance& i) { return check_variables(i, Type::string, variables, count, values) ? fmi2OK : fmi2Error; };
 }
 
 }  // namespace
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2Real values[]) {
-  return get(c, "fmi2GetReal", Type::real, v, n, values);
+  return guarded(c, legality::get_values, get(Type::real, v, n, values));
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2Integer values[]) {
-  return get(c, "fmi2GetInteger", Type::integer, v, n, values);
+  return guarded(c, legality::get_values, get(Type::integer, v, n, values));
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2Boolean values[]) {
-  return get(c, "fmi2GetBoolean", Type::boolean, v, n, values);
+  return guarded(c, legality::get_values, get(Type::boolean, v, n, values));
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2Real values[]) {
-  return set(c, "fmi2SetReal", Type::real, v, n, values);
+  return guarded(c, legality::set_values, set(Type::real, v, n, values));
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2Integer values[]) {
-  return set(c, "fmi2SetInteger", Type::integer, v, n, values);
+  return guarded(c, legality::set_values, set(Type::integer, v, n, values));
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2Boolean values[]) {
-  return set(c, "fmi2SetBoolean", Type::boolean, v, n, values);
+  return guarded(c, legality::set_values, set(Type::boolean, v, n, values));
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference v[], size_t n, fmi2String values[]) {
-  return check_strings(c, legality::get_values, "fmi2GetString", v, n, values);
+  return guarded(c, legality::get_values, check_strings(v, n, values));
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference v[], size_t n, const fmi2String values[]) {
-  return check_strings(c, legality::set_values, "fmi2SetString", v, n, values);
+  return guarded(c, legality::set_values, check_strings(v, n, values));
 }

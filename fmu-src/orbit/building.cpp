@@ -24,12 +24,16 @@ constexpr double least_swing = 0.01, largest_steady = 0.003, largest_break = 0.1
 
 }  // namespace
 
-// Whether a symmetry that takes y at t onto `image` at t_image holds there: the right-hand side at the image is the
-// mapped one, `expected`, and every watched function is the same.
-bool Orbit::maps(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
-                 const double* expected) {
+// (motion at t, its image at t_image, a map of rates) => whether the right-hand side at the image is the mapped one,
+// and every watched function is the same.
+template <class Map>
+bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const Map& map) const {
   constexpr double alike = 1e-5;
-  double rate[states], weights[states];
+  double y[states], image[states], expected[states], rate[states], weights[states];
+  read_integrated(t, y);
+  read(t_image, image);
+  problem.derivative(problem.owner, t, y, expected);
+  map(expected);
   problem.derivative(problem.owner, t_image, image, rate);
   problem.weights(problem.owner, problem.share, y, weights);
   for (int i = 0; i < states; ++i)
@@ -53,6 +57,20 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
   result_ = follow(problem, pass, from_zero, solver);
   counters_ = solver.counters();
   return result_;
+}
+
+bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_angle) {
+  latest_half_ = {};
+  start_.psi_sum = y0[WHEEL_PSI];
+  start_.phi_sum = y0[WHEEL_PHI];
+  start_.place = place_of(y0);
+  start_.rotation = std::polar(1.0, y0[WHEEL_PSI]);
+  // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
+  const double t = 0.6 * T2_;
+  const auto turn = [&](double* rate) { set_place(rate, start_.rotation * place_of(rate)); };
+  if (!maps(problem, t, t, turn)) return false;
+  until_ = ends() ? T2_ : most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
+  return true;
 }
 
 // Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
@@ -126,13 +144,10 @@ bool Orbit::unfold(const solver::Problem& problem, Result kind) {
 
 // Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
 bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
-  double y[states], rate[states], image[states];
-  read_integrated(T2_ - since, y);
-  read(T2_ + since, image);
-  problem.derivative(problem.owner, T2_ - since, y, rate);
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
-  set_place(rate, -half_of(T2_ + since).rotation * std::conj(place_of(rate)));
-  return maps(problem, T2_ - since, y, T2_ + since, image, rate);
+  return maps(problem, T2_ - since, T2_ + since, [&](double* rate) {
+    for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
+    set_place(rate, -half_of(T2_ + since).rotation * std::conj(place_of(rate)));
+  });
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,

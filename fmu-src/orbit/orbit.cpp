@@ -30,24 +30,6 @@ void Track::read(double t, double* y) const {
   solver::evaluate<states>(piece.c, degree, (t - piece.end) / (piece.end - piece.start), y);
 }
 
-bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_angle) {
-  latest_half_ = {};
-  start_.psi_sum = y0[WHEEL_PSI];
-  start_.phi_sum = y0[WHEEL_PHI];
-  start_.place = place_of(y0);
-  start_.rotation = std::polar(1.0, y0[WHEEL_PSI]);
-  // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
-  const double t = 0.6 * T2_;
-  double integrated[states], rate[states], y[states];
-  read_integrated(t, integrated);
-  read(t, y);
-  problem.derivative(problem.owner, t, integrated, rate);
-  set_place(rate, start_.rotation * place_of(rate));
-  if (!maps(problem, t, integrated, t, y, rate)) return false;
-  until_ = ends() ? T2_ : most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
-  return true;
-}
-
 // What the sums need, from the states at T1 and T2.
 void Orbit::take_half() {
   latest_half_ = {};

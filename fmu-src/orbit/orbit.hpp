@@ -78,6 +78,7 @@ class Orbit {
   void read(double t, double* y) const;
   double until() const { return until_; }  // s
   bool is_entered() const { return until_ != nowhere; }
+  bool is_refused() const { return result_ == Result::refused; }
   bool ends() const { return result_ == Result::ended; }
   int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
@@ -109,8 +110,8 @@ class Orbit {
   };
 
   // building.cpp
-  static bool maps(const solver::Problem& problem, double t, const double* y, double t_image, const double* image,
-                   const double* expected);
+  template <class Map>
+  bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;
   bool is_steady(const solver::Problem& problem, const double* y0);
   bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
   Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);

@@ -5,8 +5,6 @@
 // read, so the communication grid cannot change a bit of the solution; only a stop time of the owner cuts a step short.
 #pragma once
 
-#include <cmath>
-
 #include "collocation.hpp"
 #include "cvode_engine.hpp"
 #include "problem.hpp"

@@ -149,7 +149,7 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 // Where the ground begins to pull or to press, the motion goes on as it was if there is no friction.
 Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
-  if (row.observed) now.set_below(row.event, !now.is_below(row.event));
+  if (row.observed) now.cross(row.event);
   const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();
   return row.follow || (row.event == Event::lost_contact && acts) ? Consequence::bends : Consequence::goes_on;
 }
@@ -178,7 +178,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, now) && margin_of(row, setup, now, t, y) < 0)
-      now.set_below(row.event, !now.is_below(row.event));
+      now.cross(row.event);
 }
 
 }  // namespace wheel

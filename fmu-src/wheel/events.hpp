@@ -2,8 +2,6 @@
 // follows. Stepping, the unfolded wheel, model exchange and snapshots work from this table (events.cpp).
 #pragma once
 
-#include <cmath>
-
 #include "run.hpp"
 
 namespace wheel {

@@ -76,17 +76,13 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
   WheelKinematics k;
   f.kinematics(&setup.scene.wheel, y, &k);
   const double u = f.slip_index < 0 ? 0 : y[f.slip_index], chi = f.slip_index < 0 ? 0 : y[f.slip_index + 1];
-  WheelMotion motion = {k.psi,
-                        k.theta,
-                        k.phi,
-                        starts ? psi_dot : k.psi_dot,
-                        starts ? theta_dot : k.theta_dot,
-                        k.phi_dot,
-                        k.X_O,
-                        k.Y_O,
-                        u * std::cos(chi),
-                        u * std::sin(chi)};
-  if (!starts) wheel_jump(&scene, psi_dot, theta_dot, &motion);
+  const double slip_x = u * std::cos(chi), slip_y = u * std::sin(chi);
+  WheelMotion motion = {k.psi, k.theta, k.phi, psi_dot, theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
+  if (!starts) {
+    motion.psi_dot = k.psi_dot;
+    motion.theta_dot = k.theta_dot;
+    wheel_jump(&scene, psi_dot, theta_dot, &motion);
+  }
   set_out(f, setup.scene.wheel, motion, y);
 }
 

@@ -99,13 +99,13 @@ bool enter_orbit(Wheel& w) {
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
   const solver::Problem problem = problem_of(w);
-  if (w.orbit_shape != asked) {
+  if (w.orbit_shape != asked || orbit.is_refused()) {
     const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    const auto result = orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solver);
+    orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solver);
     w.run.in_force = at_start;
-    w.orbit_shape = result == orbit::Orbit::Result::refused ? Shape() : asked;
+    w.orbit_shape = asked;
   }
-  if (w.orbit_shape != asked || !orbit.enter(problem, w.setup.start, largest_angle)) return false;
+  if (orbit.is_refused() || !orbit.enter(problem, w.setup.start, largest_angle)) return false;
   w.run.counted = orbit.counters();
   return true;
 }

@@ -70,8 +70,8 @@ struct InForce {
   bool in_layer() const { return layered && scene.friction.kind == WHEEL_REGULARIZED; }
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
   bool pulls() const { return is_below(Event::lost_contact); }
-  void set_below(Event event, bool is) {
-    below[static_cast<int>(event)] = is;
+  void cross(Event event) {
+    below[static_cast<int>(event)] = !is_below(event);
     scene.ground = pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
   }
 

@@ -3,7 +3,6 @@
 // header what it writes. The run has a clock, zero at the start, so that a start time of 1e9 s costs no digits.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 
 #include "orbit.hpp"
@@ -46,7 +45,7 @@ struct Reading {
 // What shapes the motion on an orbit: the parameters without heading and roll angle of the start, which are zero here,
 // and the tolerance.
 struct Shape {
-  double parameters[first_input] = {}, tolerance = 0;  // 0: no orbit
+  double parameters[first_input] = {}, tolerance = 0;
   bool slides = false;
   bool operator==(const Shape&) const = default;
 };
@@ -61,7 +60,7 @@ struct Wheel {
   // The solution: steps of the solver, or the orbit of a wheel that is unfolded.
   solver::Solver solver;
   orbit::Orbit orbit;
-  Shape orbit_shape;              // of `orbit`; it is entered where it is the present run's
+  Shape orbit_shape;              // for which `orbit` was built; it is entered where it is the present run's
   const char* failure = nullptr;  // why the last step failed; null: see the solver
   long long endings = 0;          // logged, of all runs since the last reset, those that a state led back from included
   std::optional<Reading> reading;  // of the instant reached; dropped by each call that may change the wheel
