@@ -270,14 +270,9 @@ void stop_spin(const WheelParameters* wheel, double* y) {
 
 template <bool slides>
 void reduce(const double* y, double* reduced) {
-  reduced[WHEEL_THETA] = y[theta];
-  reduced[WHEEL_OMEGA_1] = y[theta_dot];
-  reduced[WHEEL_OMEGA_2] = y[psi_dot] * std::sin(y[theta]);
+  const WheelMotion motion = {y[psi], y[theta], y[phi], y[psi_dot], y[theta_dot], 0, y[X_O], y[Y_O], 0, 0};
+  wheel_reduced.start(nullptr, &motion, reduced);  // reads no parameter
   reduced[WHEEL_OMEGA_3] = y[spin];
-  reduced[WHEEL_PSI] = y[psi];
-  reduced[WHEEL_PHI] = y[phi];
-  reduced[WHEEL_X_O] = y[X_O];
-  reduced[WHEEL_Y_O] = y[Y_O];
   if (!slides) return;
   reduced[WHEEL_SLIP] = y[speed];
   reduced[WHEEL_CHI] = y[chi];

@@ -20,7 +20,7 @@ struct Handle {
   volatile std::uint64_t mark;  // else compilers drop the store that wipes it before the memory is freed
 };
 
-// Null unless the pointer is one of this kind. If not null, it must point to memory that can be read.
+// (pointer) => the same, null unless it is one of this kind. If not null, it must point to memory that can be read.
 template <class Handled>
 Handled* handle_of(void* passed) {
   auto* const handle = static_cast<Handle*>(passed);
@@ -35,7 +35,7 @@ void release(Handled* handle) {
   std::free(handle);
 }
 
-// The category of a topic as modelDescription.xml names it, the status of its messages, and that of a call that ends
+// (topic) => its category as modelDescription.xml names it, the status of its messages, and that of a call that ends
 // with one. At their default level many masters hide messages of the status Discard.
 struct Category {
   const char* name;

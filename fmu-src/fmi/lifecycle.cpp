@@ -23,7 +23,7 @@ const char* refusal(const char* name, const fmi2Type& asked, const char* guid) {
   return nullptr;
 }
 
-// Topics of one category; logAll names them all, an unknown one none.
+// (category) => its topics: of logAll all, of an unknown one none
 unsigned topics_of(const char* category) {
   unsigned topics = 0;
   for (const Topic topic : {Topic::event, Topic::warning, Topic::error, Topic::discard})

@@ -16,6 +16,7 @@ constexpr double step_rounding = 1e-9, time_rounding = 1e-13;
 // Of the step: how much of it may be lost in the rounding of the time reached.
 constexpr double step_digits = 0.1;
 
+// (times, step) => whether they count as equal
 bool same_time(double a, double b, double step) {
   return std::fabs(a - b) <= step_rounding * step + time_rounding * (std::fabs(a) + std::fabs(b));
 }

@@ -105,7 +105,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
   }
 }
 
-// To the end of a step, past the events after which the motion goes on.
+// (solver) => stepped to the end of a step, past the events after which the motion goes on
 solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
@@ -122,7 +122,7 @@ solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::S
   }
 }
 
-// Where omega_1 falls through zero in the last step, seen from the side of `before`, on which the step begins.
+// (last step) => instant at which omega_1 falls through zero, seen from the side of `before`, on which the step begins
 double Orbit::turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
   const auto value = [](void*, int side, double, const double* y) { return side * y[WHEEL_OMEGA_1]; };
   const solver::Watched watched = {before > 0 ? 1 : -1, value, false, WHEEL_OMEGA_1};

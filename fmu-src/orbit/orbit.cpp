@@ -30,7 +30,7 @@ void Track::read(double t, double* y) const {
   solver::evaluate<states>(piece.c, degree, (t - piece.end) / (piece.end - piece.start), y);
 }
 
-// What the sums need, from the states at T1 and T2.
+// (states at T1 and T2) => terms of the sums
 void Orbit::take_half() {
   latest_half_ = {};
   read_integrated(T1_, at_T1_);
@@ -44,9 +44,9 @@ void Orbit::take_half() {
   mirror_rotation_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
 }
 
-// The k halves before it are the integrated one and its mirror image in turn. A pair of them turns the path by 2 delta;
-// with d the displacement of O in the first half, n pairs carry O by a geometric sum,
-// 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
+// (k) => the half k. The k halves before it are the integrated one and its mirror image in turn. A pair of them turns
+// the path by 2 delta; with d the displacement of O in the first half, n pairs carry O by a geometric sum, 2 Re(d
+// exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
 Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.begin = begin_of(k);
@@ -72,7 +72,7 @@ const Orbit::Half& Orbit::half_of(double t) const {
   return latest_half_ = half_at(k);
 }
 
-// y from the frame of the integrated half to the fixed axes; way: from the start of the half to O.
+// (y in the frame of the integrated half, way from the start of the half to O) => y in fixed axes
 void Orbit::to_fixed(const Half& half, Complex way, double* y) {
   y[WHEEL_PSI] += half.psi_sum;
   y[WHEEL_PHI] += half.phi_sum;

@@ -37,7 +37,7 @@ class Track {
   // The next step, with its polynomial; false where the track is full or there is no memory for it.
   bool add(const solver::Step& step);
 
-  // y (out) at t, between the first instant and the last.
+  // (t, between the first instant and the last) => y
   void read(double t, double* y) const;
 
  private:
@@ -74,7 +74,7 @@ class Orbit {
   bool enter(const solver::Problem& problem, const double* y0, double most_angle);
   void leave() { until_ = nowhere; }
 
-  // The state (out, 8 entries) at 0 <= t <= until().
+  // (0 <= t <= until()) => y
   void read(double t, double* y) const;
   double until() const { return until_; }  // s
   bool is_entered() const { return until_ != nowhere; }

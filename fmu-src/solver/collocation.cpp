@@ -65,7 +65,7 @@ constexpr double longer = 1.01;  // of the stop
 // The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.
 constexpr double roundings = 2;
 
-// At the point j of a step of this size.
+// (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
   const Eigen::Map<const Rates> rates(&f[0][0]);
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
@@ -139,8 +139,8 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
   return std::isfinite(largest) ? largest : INFINITY;
 }
 
-// First rates: those of the last step's polynomial, which goes on, or the rates at the start. Where a speed changes by
-// its size within the step, the turning at its start is most often rounding over the speed: zero is nearer.
+// (last step) => first rates: those of its polynomial, which goes on, or the rates at the start. Where a speed changes
+// by its size within the step, the turning at its start is most often rounding over the speed: zero is nearer.
 bool Collocation::predict(const Problem& problem, const Step& last, Counters* counters, Step* step) {
   if (last.degree != radau_points) {
     ++counters->rhs;
@@ -160,7 +160,8 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
   return true;
 }
 
-// The error of the step over size_ in units of the weights; infinite where the sweeps do not converge. They end where
+// (predicted rates) => rates, and the error of the step in units of the weights; infinite where the sweeps do not
+// converge. They end where
 //   the change is below `distance`;
 //   the changes that would follow, change^2 / (before - change), are: from the second sweep on, and where the step is
 //     not predicted, from a small change on, as the first fall need not be that of the next;
@@ -189,7 +190,7 @@ double Collocation::try_size(const Problem& problem, const double* weights, bool
   return weighted_norm<max_states>(last.data(), weights);
 }
 
-// The step gets its size, and its end, `stop` where that is near: true.
+// (wanted size, stop) => size and end of the step; whether it is `stop`, where that is near
 bool Collocation::size_up(const Problem& problem, double stop, double shortest, Step* step) {
   size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
   const bool stops = step->start + longer * size_ >= stop;
@@ -198,7 +199,7 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
   return stops;
 }
 
-// The size of the next step, from the error of this one. Where the direction starts off its limit, errors hardly depend
+// (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend
 // on the size of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
   const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
@@ -209,6 +210,15 @@ void Collocation::like(const Problem& problem, double error, int attempts, bool 
   liked_ *= std::clamp(step.y_end[speed] / step.y_start[speed], 0.4, 1.0);
 }
 
+// (its end) => the last step with its polynomial, of degree 0 where the rates are not known
+Step Collocation::last_step(const Problem& problem, double end) {
+  Step last = {};
+  last.start = end - size_;
+  last.end = end;
+  if (known_) expand(problem, &last);
+  return last;
+}
+
 // Tries sizes until
 //   the error is at most one: the step is accepted;
 //   it is not, at the shortest size, or after most_tries;
@@ -216,10 +226,7 @@ void Collocation::like(const Problem& problem, double error, int attempts, bool 
 bool Collocation::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
   double weights[max_states] = {};
   problem.weights(problem.owner, part_of_tolerance * problem.share, step->y_start, weights);
-  Step last = {};
-  last.start = step->start - size_;
-  last.end = step->start;
-  if (known_) expand(problem, &last);
+  const Step last = last_step(problem, step->start);
   const double shortest = roundings * rounding_at(step->start);
   failure_ = step_too_small;
   for (int attempts = 0; attempts < most_tries; ++attempts) {

@@ -24,6 +24,7 @@ class Collocation final : public Engine {
   void visit(support::Archive& archive, const Problem& problem, const Step& step) override;
 
  private:
+  Step last_step(const Problem& problem, double end);
   bool predict(const Problem& problem, const Step& last, Counters* counters, Step* step);
   double try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters, Step* step);
   bool size_up(const Problem& problem, double stop, double shortest, Step* step);

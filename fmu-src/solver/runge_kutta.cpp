@@ -65,7 +65,7 @@ struct RungeKutta::Work {
     return margin;
   }
 
-  // h sum of row_j f_j.
+  // (f) => h sum of row_j f_j
   template <const auto& matrix, int row>
   void combine(double* sum) const {
     constexpr auto used = stages_of<matrix, row>();
@@ -92,7 +92,7 @@ struct RungeKutta::Work {
     return !std::isnan(engine.end_margin_);
   }
 
-  // Both estimates together, as DOP853 weighs them.
+  // (f) => error in units of the weights: both estimates together, as DOP853 weighs them
   double error() const {
     double e_3[width], e_5[width];
     combine<dormand_prince::e, 0>(e_3);
@@ -111,7 +111,7 @@ struct RungeKutta::Work {
     return error();
   }
 
-  // From f and from its change over a short Euler step (II.4).
+  // (f) => size of the first step, from f and from its change over a short Euler step (II.4)
   double guess_size() {
     const double *f = engine.f_[0], speed = norm(f), longest = problem.longest_step;
     const double euler = speed > 0 ? std::fmin(0.01 * norm(step.y_start) / speed, 0.01 * longest) : 0;
@@ -123,8 +123,9 @@ struct RungeKutta::Work {
     return longest * std::fmin(1, eighth_root(0.01 / change));
   }
 
-  // The error divided by h^8 changes along the motion, and is expected to change by the same factor once more
-  // (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any step is then rejected.
+  // (error) => size of the next step. The error divided by h^8 changes along the motion, and is expected to change by
+  // the same factor once more (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any
+  // step is then rejected.
   double next_size(double found) {
     const double error = std::fmax(found, 1e-6);  // smaller errors, as after a step cut short, are mostly rounding
     const double before = engine.last_error_;

@@ -25,11 +25,11 @@ struct Search {
     return {t, watched.value(problem.owner, watched.event, t, y)};
   }
 
-  // The first instant in [lo.t, hi.t] at which g is below zero, if there is one. lo.g below zero: lo.t. No extreme lies
-  // before lo.t.
+  // (lo, hi) => the first instant in [lo.t, hi.t] at which g is below zero, if there is one. lo.g below zero: lo.t. No
+  // extreme lies before lo.t.
   std::optional<double> find_first_fall(Sample lo, Sample hi) const;
 
-  // Whether g, known at three instants, is so far above zero that it cannot fall below it between them.
+  // (three samples) => whether g is so far above zero that it cannot fall below it between them
   static bool stays_above(Sample lo, Sample inside, Sample hi);
 
  private:

@@ -51,7 +51,7 @@ class Solver {
   // Whether y(t) is known: known_until() is at t, up to a few roundings of t, or past it.
   bool reaches(double t) const;
 
-  // Dense output y(t), step_start() <= t <= known_until(), clamped; t within a few roundings of an end is that end.
+  // (t) => y, step_start() <= t <= known_until(), clamped; t within a few roundings of an end is that end.
   void read(double t, double* y) const;
 
   // With its polynomial.

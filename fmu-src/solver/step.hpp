@@ -18,13 +18,14 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 inline constexpr const char* step_too_small =
     "the step size became too small: extreme forces, or a communication step too long for a stiff link";
 
-// Two times closer than this are the same instant, s.
+// (t) => two times closer than this are the same instant, s
 inline double rounding_at(double t) { return 8 * std::numeric_limits<double>::epsilon() * std::fabs(t); }
 
 // Made of square roots, because pow may differ between platforms in the last bit.
 inline double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
-// Root mean square of weight times entry: even and odd ones apart, which the processor sums side by side.
+// (x, weights) => root mean square of weight times entry: even and odd ones apart, which the processor sums side by
+// side
 template <int width>
 double weighted_norm(const double* x, const double* weights) {
   double even = 0, odd = 0;
@@ -35,8 +36,8 @@ double weighted_norm(const double* x, const double* weights) {
   return std::sqrt((even + odd) / width);
 }
 
-// sum of c_k s^k of `width` states from `first` on, even and odd powers apart: two Horner schemes that the processor
-// can compute side by side. A master pays for this at each communication point.
+// (c, s) => y = sum of c_k s^k, of `width` states from `first` on, even and odd powers apart: two Horner schemes that
+// the processor can compute side by side. A master pays for this at each communication point.
 template <int width, int row>
 void evaluate(const double (*c)[row], int degree, double s, double* y, int first = 0) {
   const int even = degree - degree % 2, odd = degree - 1 + degree % 2;

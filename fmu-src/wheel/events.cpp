@@ -15,6 +15,7 @@ bool has_layer_ahead(const Setup& setup, const InForce& now) {
   return now.layered || (now.inputs.varies && can_stiffen(setup, now));
 }
 
+// (t, y) => how far the spin is from the edge of the layer, or the law from being stiff
 double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
   if (!now.layered) return softness_of(setup, now.scene_at(t), y);
   const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
@@ -22,18 +23,20 @@ double way_to_layer(const Setup& setup, const InForce& now, double t, const doub
   return (now.in_layer() ? inside : outside) / setup.rate_scale;
 }
 
-// How far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, what holding leaves
-// unused. In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
+// In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !now.layered);
 }
 
+// (t, y) => capacity that is not needed to hold the wheel
 [[gnu::noinline]] double left_while_held(const Setup& setup, const InForce& now, double t, const double* y) {
   return hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
 }
 
+// (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
+// that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
   const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
@@ -55,7 +58,7 @@ void change_spin(const Setup& setup, double t, double* y, InForce& now) {
 
 bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 
-// What is left of the slip at its end falls at once.
+// (t, y) => slip above the least; what is left of it at its end falls at once
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double near = 1e3;
   const int slip = setup.sliding->slip_index;
@@ -77,11 +80,11 @@ void end_slip(const Setup& setup, double t, double* y, InForce& now) {
 bool always(const Setup&, const InForce&) { return true; }
 bool always_ends(const Setup&) { return true; }
 
-// N over the weight.
+// (N) => N over the weight
 double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
-// N is infinite where the wheel jams.
+// (N) => below zero where it is infinite: the wheel jams
 double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
-// rad from where the wheel counts as flat.
+// (y) => rad from where the wheel counts as flat
 double height_of(const Setup& setup, const double* y, double) {
   return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
 }
@@ -139,7 +142,7 @@ constexpr bool is_sound(const EventRow& row) {
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
 
-// Below zero where the event has occurred.
+// (value) => margin: below zero where the event has occurred
 double signed_margin(const EventRow& row, const InForce& now, double value) {
   return row.observed ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
 }

@@ -44,12 +44,13 @@ inline bool is_observed(const EventRow& row, const Setup& setup) { return row.ob
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
 Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
 
+// (row, t, y) => its margin
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);
 
-// The least margin of the rows with a quick value that can occur, at the state y where the normal force is N.
+// (y, its normal force N) => least margin of the rows with a quick value that can occur
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N);
 
-// Observed events that lie below zero at t and y, from a motion in which they were not followed.
+// (t, y) => which observed events lie below zero, after a motion in which they were not followed
 void place_observed(const Setup& setup, double t, const double* y, InForce& now);
 
 }  // namespace wheel

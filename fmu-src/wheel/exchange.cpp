@@ -29,7 +29,7 @@ void keep_above_ground(const Setup& setup, double* y) {
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
 }
 
-// At the instant reached, or `ahead` s later along the present rates.
+// (row, ahead: s) => its margin at the instant reached, or `ahead` later along the present rates
 double margin_at(const EventRow& row, const Setup& setup, const Run& run, double ahead = 0) {
   double y[WHEEL_MAX_STATES];
   std::copy_n(run.y, WHEEL_MAX_STATES, y);
@@ -62,7 +62,7 @@ bool is_led(const Setup& setup, const Run& run) {
   return scene.friction.sigma * spin >= std::fmin(rate, 0) * setup.longest_step - spin_error;
 }
 
-// The event by which the model ends at the instant reached.
+// (run) => the event by which the model ends at the instant reached
 Event ending_at(const Setup& setup, const Run& run) {
   Event ending = Event::none;
   for (const EventRow& row : event_rows)

@@ -9,7 +9,7 @@ namespace wheel {
 inline constexpr int state_count = WHEEL_REDUCED_STATES;
 // One for each event of the table that can occur in model exchange.
 int indicator_count();
-// The place of a variable among the states, or -1.
+// (variable) => its place among the states, or -1
 int state_index_of(unsigned variable);
 
 // What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks

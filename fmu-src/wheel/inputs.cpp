@@ -17,7 +17,8 @@ bool acts(const double* c, int from) {
   return std::any_of(c + from, c + max_order + 1, [](double part) { return part != 0; });
 }
 
-// Real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their number.
+// (c) => real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their
+// number
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
   if (!(d > 0)) return 0;
@@ -110,7 +111,8 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   return found;
 }
 
-// Between two extremes the polynomial passes zero once: by halving, to the last bit of the time.
+// Between two extremes the polynomial passes zero once. Halves until
+//   no time lies between the ends.
 double Inputs::corner(double t, double until) const {
   const auto brakes = [&](double at) { return value_at(c[brake_input], at - origin) > 0; };
   double ends[most_extremes + 1];

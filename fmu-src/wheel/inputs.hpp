@@ -17,10 +17,10 @@ inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
-// Whether a rate of the carrier or one of its derivatives is not zero.
+// (inputs) => whether a rate of the carrier or one of its derivatives is not zero
 bool is_guiding(const Polynomials& inputs);
 
-// The load (out) at tau, s, from the origin, and its rate there: a brake at zero can only be put on. `guides`: the
+// (inputs, tau: s from the origin) => load, and its rate: a brake at zero can only be put on. `guides`: the
 // carrier's inputs act.
 void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load);
 WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
@@ -43,14 +43,14 @@ struct Inputs {
   void set_load_at(double t, WheelLoad& load) const { set_load(c, guides, t - origin, load); }
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;
-  // Instants strictly inside (t_lo, t_hi), ascending, at which an input has an extreme; returns their number.
+  // (t_lo, t_hi) => instants strictly between them, ascending, at which an input has an extreme; returns their number
   int extremes(double t_lo, double t_hi, double* instants) const;
-  // The first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a corner, s;
-  // infinite where there is none.
+  // (t, until) => the first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a
+  // corner, s; infinite where there is none
   double corner(double t, double until) const;
 };
 
-// The entry of a load that one input, or the slope of one, sets.
+// (load, input) => the entry that the input, or its slope, sets
 double* load_entry(WheelLoad& load, int input);
 
 }  // namespace wheel

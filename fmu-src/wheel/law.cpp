@@ -14,7 +14,7 @@ constexpr WheelFriction frictionless = {WHEEL_FRICTIONLESS, 0, 0}, held = {WHEEL
 WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.0, 0}; }
 WheelFriction regularized(const Setup& setup) { return {WHEEL_REGULARIZED, 0, setup.omega_s}; }
 
-// Rolling against the moment that would hold the wheel.
+// (moment that would hold the wheel) => rolling against it
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
 // (scene, y) => the law, apart from layers.
@@ -27,13 +27,14 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
-// The laws to try where the wheel starts to slide: without spin, with rolling friction or brake, first that it is held.
+// Whether the laws of a wheel that starts to slide are tried one by one, held first: without spin, with rolling
+// friction or brake.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
   return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
 }
 
-// A slip without friction.
+// (scene, y) => the slip as it would be without friction
 WheelSlip free_slip(const Setup& setup, WheelScene scene, const double* y) {
   double reduced[WHEEL_MAX_STATES];
   setup.sliding->reduce(y, reduced);

@@ -6,47 +6,49 @@
 
 namespace wheel {
 
-// What the caller has set is in force from t on, and with it the contact and the law of friction at the state y. Writes
-// the slip and what a jump of the carrier's rates changes in y.
+// (demand, t, y) => in_force, y: what the caller has set is in force from t on, and with it the contact and the law of
+// friction. In y it writes the slip, and what a jump of the carrier's rates changes.
 void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
-// Road and inputs, and what follows from them alone. A mu_max set below mu_slide counts for both.
+// (road, t, inputs) => in_force: both, and what follows from them alone. A mu_max set below mu_slide counts for both.
 void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
-// From here on the wheel carrier turns at the rates asked for: with a jump, or, at the start, as if it had always
-// turned so. Writes y.
+// (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
+// it had always turned so.
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
 
-// Decides contact and law from t and y on. A slip that is more than nothing goes on; else the wheel rolls where it can,
-// and begins to slide where it cannot. Writes the slip in y.
+// (t, y) => contact, law, slip in y: a slip that is more than nothing goes on; else the wheel rolls where it can, and
+// begins to slide where it cannot.
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
-// Decides the law of friction from t and y on. At omega_z = 0 after Filippov: held where the moment that holds the
-// wheel is within s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold
-// it. A stiff regularized law is decided by the place of omega_z in its layer.
+// (t, y) => law of friction. At omega_z = 0 after Filippov: held where the moment that holds the wheel is within
+// s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold it. A stiff
+// regularized law is decided by the place of omega_z in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
 
-// The wheel, without slip at y, starts to slide: Coulomb's law, in the direction in which it lets a slip grow and stay.
+// (t, y without slip) => contact, law, slip in y: the wheel starts to slide by Coulomb's law, in the direction in which
+// it lets a slip grow and stay.
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
-// The direction in which a slip begins, at the state y of a wheel that slides. Without one the event that ends the run
+// (scene, y of a wheel that slides) => direction in which a slip begins, rad. Without one the event that ends the run
 // follows at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
 double first_direction(const Setup& setup, const WheelScene& scene, const double* y);
 
-// m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as much:
-// small parts of the tolerance, and large enough for the digits of an instant.
+// (t) => m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as
+// much: small parts of the tolerance, and large enough for the digits of an instant.
 double least_slip(const Setup& setup, double t);
 
 // Whether the road limits the force of rolling: mu_max = 0 is no limit, and of a wheel that can slide no friction.
 inline bool is_limited(const Setup& setup, const Road& road) { return setup.sliding || road.mu_max > 0; }
 
-// N^2 - (lambda_t / mu_max)^2 over the weight squared, of a wheel that rolls; below zero too where the ground pulls.
+// (t, y of a wheel that rolls) => N^2 - (lambda_t / mu_max)^2 over the weight squared; below zero too where the ground
+// pulls.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
 
 // Whether two laws differ in kind, or in the side to which the wheel spins.
 inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
 
-// A wheel that is held: the moment about the axle, N m, and s N + M_brake - |tau|, N m, which is left; where rounding
+// (scene, y) => the moment that holds the wheel, N m, and s N + M_brake - |tau|, N m, which is left; where rounding
 // alone decides, the wheel stays held.
 struct Hold {
   double tau, reserve;
@@ -57,12 +59,13 @@ Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 // digit.
 inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
 
-// Below zero where a regularized law is so steep that it is solved by its layer and, around it, by the exact law, as it
-// is wherever the wheel slides. Once solved so, it stays so until an input or the contact changes.
+// A regularized law that is steep is solved by its layer and, around it, by the exact law, as it is wherever the wheel
+// slides. Once solved so, it stays so until an input or the contact changes.
 bool can_stiffen(const Setup& setup, const InForce& in_force);
 void enter_layer(const Setup& setup, const double* y, InForce& in_force);
-// 1/s, the fastest decay of the law, that at omega_z = 0.
+// (scene, y) => 1/s, the fastest decay of the law, that at omega_z = 0.
 double decay_of(const Setup& setup, const WheelScene& scene, const double* y);
+// (scene, y) => below zero where the law is steep.
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
 }  // namespace wheel

@@ -9,7 +9,7 @@
 namespace wheel {
 namespace {
 
-// An instant for messages: it is not found more exactly than to a nanosecond.
+// (t: s, clock of the run) => caller's time for messages: it is not found more exactly than to a nanosecond
 double instant_of(const Wheel& wheel, double t) {
   const double time = wheel.demand.start_time + t;
   return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;

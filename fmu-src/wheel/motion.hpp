@@ -5,8 +5,8 @@
 
 namespace wheel {
 
-// To t, s, clock of the run. `stepped`: it was reached; `event`: the run ended at run.t; `failed`: the state is that
-// before the call.
+// (t: s, clock of the run) => `stepped`: it was reached; `event`: the run ended at run.t; `failed`: the state is that
+// before the call
 [[nodiscard]] solver::Outcome advance(Wheel& wheel, double t);
 
 }  // namespace wheel

@@ -31,9 +31,10 @@ template <int states>
   return least_margin(setup, now, y, N);
 }
 
-// The rounding of the rates near flat, relative. psi_dot = omega_2 / sin(theta) magnifies that of theta, of which a
-// tenth is left over many steps. Where psi_dot is a state, accelerations of the size of r_0 psi_dot^2 cancel: their
-// rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip, which follows them at once.
+// (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 /
+// sin(theta) magnifies that of theta, of which a tenth is left over many steps. Where psi_dot is a state, accelerations
+// of the size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the
+// direction of a slip, which follows them at once.
 double rounding_of_rates(double theta, double heading, bool slides) {
   const double cancels = slides ? heading * heading : heading;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
@@ -63,11 +64,12 @@ void weights(void* owner, double share, const double* y, double* weights) {
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
 
+// (event, t, y) => its margin
 double margin(void* owner, int event, double t, const double* y) {
   return margin_of(row_of(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
 }
 
-// Of |u| chi_dot by the direction chi of the slip.
+// (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
@@ -76,8 +78,8 @@ void slopes_of_turning(void* owner, double t, const double* y, std::span<const d
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, reduced, chi.back()).settling);
 }
 
-// Of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment forward and backward; zero
-// where the ground pulls and no brake acts.
+// (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment
+// forward and backward; zero where the ground pulls and no brake acts. `others`: of each rate by that of omega_z.
 void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes,
                     double* others) {
   const Setup& setup = wheel_of(owner).setup;

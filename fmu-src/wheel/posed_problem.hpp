@@ -6,12 +6,13 @@
 
 namespace wheel {
 
-// Of setup and what is in force; the functions that are watched go with what is in force. The wheel stays where it is
-// as long as the problem is in use.
+// (wheel) => problem of its setup and of what is in force; the functions that are watched go with what is in force. The
+// wheel stays where it is as long as the problem is in use.
 solver::Problem problem_of(Wheel& wheel);
-// What follows from an event for the motion alone: what is in force is changed, nothing is counted or logged.
+// (event, t, y) => what follows for the motion alone: what is in force is changed, nothing is counted or logged.
 solver::Consequence pass_on_orbit(void* wheel, int event, double t, double* y);
-// What solves the motion that is not unfolded: collocation where the direction of a slip or omega_z settles at once.
+// (what is in force) => engine of a motion that is not unfolded: collocation where the direction of a slip or omega_z
+// settles at once.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 }  // namespace wheel

@@ -59,9 +59,9 @@ inline Road road_asked(const Demand& demand) {
 
 // What acts on the wheel.
 struct InForce {
-  Road road = {};
-  // Its wheel and mu_slide follow from `road`; its load is that at the origin of the inputs; `ground` follows from
-  // `below`, `guided` from the setup. Without a law until one is decided; the wheel rolls.
+  Road road = {};  // as it was asked for: what acts of it stands in `scene`, but for mu_max
+  // Wheel, mu_slide and `guided` follow from road and setup (apply_loads), the load is that at the origin of the
+  // inputs, `ground` follows from `below`. Without a law until one is decided.
   WheelScene scene = {};
   Inputs inputs;
   bool layered = false;          // a regularized law so steep that it is the exact one but in its layer

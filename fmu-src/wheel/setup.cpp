@@ -11,6 +11,7 @@
 namespace wheel {
 namespace {
 
+// (x > 0) => largest power of two below or at it
 double power_of_two_below(double x) {
   constexpr std::uint64_t exponent = 0x7ff0000000000000;
   return std::fmax(std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & exponent),

@@ -75,9 +75,10 @@ struct Setup {
   bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
 };
 
+// (parameters, tolerance, kind) => setup
 Setup setup_of(const Demand& demand);
 
-// The state y (out) of a motion.
+// (motion) => y
 void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y);
 
 // The equations of the contact's mode.
@@ -88,31 +89,33 @@ inline const WheelFormulation& formulation_of(const Setup& setup, const WheelSce
 struct Rates {
   double N, y_dot[WHEEL_MAX_STATES];
 };
+// (scene, y) => y_dot, N
 inline Rates rates_of(const Setup& setup, const WheelScene& scene, const double* y) {
   Rates rates;
   rates.N = formulation_of(setup, scene).derivative(&scene, y, rates.y_dot);
   return rates;
 }
 
+// (scene, y) => accelerations, reactions
 inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, const double* y) {
   WheelDynamics dynamics;
   formulation_of(setup, scene).dynamics(&scene, y, &dynamics);
   return dynamics;
 }
 
-// The scales at the spin omega_z, rad/s. A fast wheel hardly tilts: the range of theta falls with the square of the
+// (omega_z, rad/s) => scale of each state. A fast wheel hardly tilts: the range of theta falls with the square of the
 // spin, that of the rates with the spin, and errors are weighed by these ranges.
 void scales_at(const Setup& setup, double omega_z, double* out);
 
-// Errors add up over the turns of a fast wheel. Returns the fraction of the usual error that a step may make at the
-// spin omega_z, rad/s: below one where the wheel turns very often within the time scale.
+// (omega_z, rad/s) => fraction of the usual error that a step may make: errors add up over the turns of a fast wheel,
+// so it is below one where the wheel turns very often within the time scale.
 double share_at(const Setup& setup, double omega_z);
 
 // Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.
 inline constexpr double flat_angle = 1e-7;
 
 inline constexpr double upright = 0.5 * std::numbers::pi;  // rad
-// rad, from the side that is nearer.
+// (theta) => rad, from the side that is nearer
 inline double angle_from_flat(double theta) { return upright - std::fabs(theta - upright); }
 
 // rad: a larger angle has too few digits for a heading.

@@ -89,8 +89,10 @@ struct Pass {
     return true;
   }
 
-  // Smaller and smaller steps for what bends within the first: the forces of a small spin or slip turn over. One of the
-  // first must be possible.
+  // Smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
+  //   all derivatives are exact;
+  //   the step is as small as rounding;
+  //   none of the first steps is possible: false.
   template <class MoveTo>
   bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
     constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;

@@ -15,7 +15,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 // Largest input, N or N m: far above any real load. Products of larger loads with the parameters would overflow.
 constexpr double strongest = 1e300;
 
-// J, of the whole X_O and Y_O.
+// (reading) => J, of the whole X_O and Y_O
 double energy(Reading& now) {
   WheelKinematics whole = now.kinematics();
   whole.X_O = now.setup->X_O.whole(whole.X_O);
@@ -23,26 +23,26 @@ double energy(Reading& now) {
   return wheel_energy(&now.scene.wheel, &whole);
 }
 
-// Of a vector of fixed axes: along e1 (0) or across it (1).
+// (vector in fixed axes, axis) => its part along e1 (0) or across it (1)
 double horizontal(Reading& now, const double (&vector)[3], int axis) {
   double parts[2];
   wheel_horizontal_force(&now.kinematics(), vector, parts);
   return parts[axis];
 }
 
-// m/s, of O.
+// (axis) => m/s, of O
 double velocity(Reading& now, int axis) {
   return horizontal(now, {now.kinematics().X_O_dot, now.kinematics().Y_O_dot, 0}, axis);
 }
 
-// N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1).
+// (axis) => N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1)
 double guide_moment(Reading& now, int axis) {
   double moment[2] = {};
   if (now.scene.guided) wheel_guide_moment(&now.scene, &now.kinematics(), &now.dynamics(), moment);
   return moment[axis];
 }
 
-// m/s, of the wheel's material point at the contact: along e1 (0) or across it (1).
+// (axis) => m/s, of the wheel's material point at the contact: along e1 (0) or across it (1)
 double slip(const Reading& now, int axis) {
   if (now.scene.contact == WHEEL_GRIPS) return 0;
   const double* const u = now.y + formulation_of(*now.setup, now.scene).slip_index;

@@ -51,6 +51,7 @@ struct Row {
 };
 
 const Row& row_of(unsigned variable);
+// (reading) => how the wheel moves, and what acts on it
 Acting acting_of(Reading& now);
 
 // A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the

@@ -75,14 +75,14 @@ inline bool is_idle(const Wheel& wheel, unsigned variable) {
   return guides && is_running(wheel.run.phase) && !wheel.setup.steered();
 }
 
-// The state at the instant reached; writes run.y.
+// (run.t) => state there, in run.y
 const double* state_now(Wheel& wheel);
 
 // The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup and run,
 // demand.news and orbit.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
-// What acts at the instant reached, with what was set since the last step; y: a copy of run.y, whose slip it writes.
+// (y: a copy of run.y, whose slip it writes) => in force at the instant reached, with what was set since the last step
 InForce in_force_now(const Wheel& wheel, double* y);
 
 // As new: start values, nothing computed.
