@@ -77,7 +77,7 @@ def view(*arguments: object) -> int:
 
 
 def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
-    return np.array(page.evaluate("([i, name]) => [...page.wheels[i].table.columns[name]]", [wheel, name]))
+    return np.array(page.evaluate("([i, name]) => [...page.wheels[i].table.columns[name]]", [wheel, name]), dtype=float)
 
 
 def seek(page: Page, t: float) -> None:

@@ -2,7 +2,7 @@
 // about Z, theta about the line of nodes e1, and phi about the axle e3 (paper, (3)), with its contact path, carrier
 // axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
 // (in this order about z, y, x; x forward, y to the left, z up).
-import {colour} from '#dom';
+import {colour, fill} from '#dom';
 import {balance} from '#mechanics';
 import {bendTurn, dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, makeTurn, pointArrow, showRibbon} from '#shapes';
 import {before, contactOf, extent, slipOf} from '#table';
@@ -21,8 +21,7 @@ const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
 function drawTyre(pen, accent) {
-  const fill = (fillStyle, ...boxes) => boxes.forEach((box) => Object.assign(pen, {fillStyle}).fillRect(...box));
-  fill('#2b2e34', [0, 0, 2048, 256]);
+  fill(pen, '#2b2e34', [0, 0, 2048, 256]);
   // The tube's angle runs down the picture: 0 and 256 the outside, 128 the inside.
   Object.assign(pen, {strokeStyle: '#191b1f', lineWidth: 5});
   for (let x = 0; x < 2048; x += 32) {
@@ -32,8 +31,8 @@ function drawTyre(pen, accent) {
     }
   }
   pen.stroke();
-  fill('#191b1f', ...[0, 22, 229, 252].map((y) => [0, y, 2048, 4]));
-  fill(accent, ...[74, 177].map((y) => [0, y, 2048, 5]), ...[0, 2008].map((x) => [x, 0, 40, 256]));
+  fill(pen, '#191b1f', ...[0, 22, 229, 252].map((y) => [0, y, 2048, 4]));
+  fill(pen, accent, ...[74, 177].map((y) => [0, y, 2048, 5]), ...[0, 2008].map((x) => [x, 0, 40, 256]));
 }
 
 /** Tyre, and but for a hoop rim, spokes and hub, about the axle z; marked spoke and mark on the tyre at angle 0. */

@@ -3,11 +3,6 @@ import {variables} from '#dom';
 
 const instant = (t) => Number(t.toFixed(4));  // s, a communication point in plain digits
 
-const truth = (value, yes, no) => (value ? yes : no);
-/** [name, value] of what differs from the description, true and false in the words of a language. */
-const written = (given, ...words) =>
-    given.map(([name, value]) => [name, variables[name].type === 'Boolean' ? truth(value, ...words) : value]);
-
 /** fmpy: changes as an input file, each jump as two rows at one instant. */
 function byFmpy({values, changes, stop}, given, interval) {
   const names = [...new Set(changes.map(({name}) => name))];
@@ -22,14 +17,14 @@ function byFmpy({values, changes, stop}, given, interval) {
   const input = `printf '${[...rows, row(stop)].join('\\n')}\\n' >inputs.csv`;
   const options = [
     'fmpy simulate wheel.fmu', `--stop-time ${stop}`, `--output-interval ${interval}`,
-    ...(given.length ? [`--start-values ${written(given, 'true', 'false').flat().join(' ')}`] : []),
+    ...(given.length ? [`--start-values ${given.flat().join(' ')}`] : []),
     ...(changes.length ? ['--input-file inputs.csv'] : []), '--output-file motion.csv'
   ];
   return [...(changes.length ? [input] : []), options.join(' \\\n  ')].join('\n');
 }
 
 function byPython({changes, stop}, given, interval) {
-  const values = written(given, 'True', 'False').map(([name, value]) => `"${name}": ${value}`);
+  const values = given.map(([name, value]) => `"${name}": ${value === true ? 'True' : value}`);
   const list = changes.map(({t, name, value}) => `(${instant(t)}, "${name}", ${value})`);
   const end = `stop_time=${stop}, output_interval=${interval}, start_values={${values.join(', ')}}`;
   if (!changes.length)
@@ -53,7 +48,7 @@ print(motion["theta"][-1])`;
 
 function byC({changes, stop}, given, interval, guid) {
   const set = (name, value) =>
-      `${variables[name].type === 'Boolean' ? 'set_boolean' : 'set'}(${variables[name].reference}, ${value});`;
+      `${value === true ? 'set_boolean' : 'set'}(${variables[name].reference}, ${Number(value)});`;
   const start = given.map((pair) => `  ${set(...pair)}\n`);
   const later = changes.map(({t, name, value}) => `    if (k == ${Math.round(t / interval)}) ${set(name, value)}\n`);
   const shown = ['theta', 'omega_z', 'X_O', 'Y_O'];
@@ -104,7 +99,8 @@ ${later.join('')}    status = fmi2DoStep(wheel, k * ${interval}, ${interval}, 1)
 
 /** {label: text} for a plan {values, changes, stop}; interval: s from row to row. */
 export function commands(plan, interval, guid) {
-  const given = Object.entries(plan.values).filter(([name, value]) => value !== variables[name].start);
+  const typed = ([name, value]) => [name, variables[name].type === 'Boolean' ? Boolean(value) : value];
+  const given = Object.entries(plan.values).filter(([name, value]) => value !== variables[name].start).map(typed);
   return {
     fmpy: byFmpy(plan, given, interval),
     Python: byPython(plan, given, interval),

@@ -34,6 +34,10 @@ const SUBSCRIPT = /_(crit|guide|max|slide|\w(?!\w))/;  // not that of a variable
 /** A text such as ω_z or ω_crit as nodes, with its subscript. */
 export const subscripted = (text) => text.split(SUBSCRIPT).map((part, i) => (i % 2 ? make('sub', {}, part) : part));
 
+/** Fills boxes [x, y, width, height] with a colour. */
+export const fill = (pen, fillStyle, ...boxes) =>
+    boxes.forEach((box) => Object.assign(pen, {fillStyle}).fillRect(...box));
+
 /** Writes a text with its subscripts on a canvas, beginning at x, in a font of size $; returns where it ends. */
 export function write(pen, text, x, y, size, font = '$ system-ui, sans-serif') {
   text.split(SUBSCRIPT).forEach((part, i) => {

@@ -1,5 +1,5 @@
 // The 3-D stage: ground, light, cameras, and one or more views side by side in one canvas. Fixed axes X, Y, Z, Z up.
-import {$, colour} from '#dom';
+import {$, colour, fill} from '#dom';
 import {dispose, makeTexture} from '#shapes';
 import {OrbitControls, THREE} from 'three';
 
@@ -15,11 +15,11 @@ const SUN = new THREE.Vector3(1.4, -1.1, 3.6);  // where it stands, in sizes of 
 
 /** One square of the ground: lines about it and, finer, ten within it. */
 function drawSquare(pen) {
-  const fill = (name, ...boxes) =>
-      boxes.forEach((box) => Object.assign(pen, {fillStyle: colour(name)}).fillRect(...box));
-  fill('--ground', [0, 0, 1024, 1024]);
-  for (let i = 1; i < 10; ++i) fill('--grid-fine', [102.4 * i - 1.5, 0, 3, 1024], [0, 102.4 * i - 1.5, 1024, 3]);
-  for (const edge of [0, 1019]) fill('--grid', [edge, 0, 5, 1024], [0, edge, 1024, 5]);
+  const lines = (name, width, places) =>
+      places.forEach((place) => fill(pen, colour(name), [place, 0, width, 1024], [0, place, 1024, width]));
+  fill(pen, colour('--ground'), [0, 0, 1024, 1024]);
+  lines('--grid-fine', 3, [1, 2, 3, 4, 5, 6, 7, 8, 9].map((i) => 102.4 * i - 1.5));
+  lines('--grid', 5, [0, 1019]);
 }
 
 export class Stage {
