@@ -7,7 +7,7 @@ import pytest
 from page.pages import change, column, seek, start, value
 from support.bounds import within
 
-from wheelfmu.fmu.values import bodies, doubt, moments
+from wheelfmu.fmu.values import bodies, moments
 from wheelfmu.truth.closed_forms import critical_spin
 from wheelfmu.truth.scenes import PAPER
 from wheelfmu.truth.sliding import SLIDES
@@ -196,12 +196,11 @@ def test_the_force_of_a_jam_which_grows_without_bound_is_no_number(live):
     ("values", "words"),
     [
         ({}, ""),
-        ({"m": 12}, "Jz = 1.8 kg m² is more than 1.47 kg m²"),
         ({"theta_start": UPRIGHT, "phi_dot_start": 0.0}, "Rounding"),
         ({"theta_start": UPRIGHT - 1e-9, "phi_dot_start": 0.0}, ""),
     ],
 )
-def test_a_wheel_that_cannot_exist_or_that_rounding_tips_is_remarked(live, values, words):
+def test_a_fall_that_hangs_on_rounding_is_remarked(live, values, words):
     start(live, **values)
     remark = live.locator("#doubt")
     assert remark.is_visible() is bool(words) and words in remark.inner_text()
@@ -227,19 +226,17 @@ def test_a_preset_wheel_starts_as_fast_for_its_size_and_a_case_as_it_is_thrown(l
 
 
 LOOKS = {"wheel:coin": "coin", "wheel:backspin": "hoop", "body:disc": "disc", "wheel:bicycle_wheel": "wheel"}
-SHOWN = "[page.stage.models[0].look.kind, ...page.plots.all.map(({unit: {textContent}}) => textContent)]"
 
 
-def test_a_body_is_drawn_as_it_is_and_small_forces_and_energies_are_in_thousandths(live):
+def test_a_body_is_drawn_as_it_is_and_small_energies_have_their_digits(live):
     for preset, kind in LOOKS.items():
         start(live)
-        assert {"wheel", "N", "J"} <= set(live.evaluate(SHOWN))
+        look = "page.stage.models[0].look.kind"
+        assert live.evaluate(look) == "wheel"
         choose(live, preset)
-        assert live.evaluate(SHOWN)[0] == kind
-        if kind == "coin":
-            assert {"mN", "mJ"} <= set(live.evaluate(SHOWN))
-            shown = float(live.locator(".plot:not([hidden]) output").nth(3).inner_text())
-            assert shown == pytest.approx(1000 * column(live, "E")[0], abs=0.051)
+        assert live.evaluate(look) == kind
+        shown = live.evaluate("page.draw() ?? page.plots.curves.at(-1).values.textContent")
+        assert float(shown) == pytest.approx(column(live, "E")[0], rel=0.01)
 
 
 J = "['J_x', 'J_y', 'J_z'].map((name) => page.live.value(name))"
@@ -251,7 +248,7 @@ def test_the_moments_of_a_body_follow_mass_and_radii_until_one_is_set(live):
     change(live, m=12.0, r_0=0.25)
     torus = moments("torus", m=12.0, r_0=0.25)
     assert live.evaluate(J) == [*torus.values()] and live.locator("#ready").input_value() == "body:torus"
-    assert live.evaluate("page.live.trouble") is None and not live.locator("#doubt").is_visible()
+    assert live.evaluate("page.live.trouble") is None
     change(live, J_x=0.5, m=13)
     assert live.evaluate(J) == [0.5, 0.5, torus["J_z"]] and live.locator("#ready").input_value() == ""
 
@@ -273,22 +270,16 @@ def test_a_brake_lasts_as_long_as_it_is_held_however_late_the_page_draws(live):
 
 
 SAME = """async ([sizes, wheels]) => {
-  const {bodies, criticalSpin, doubtOf, momentsOf} = await import('#mechanics');
-  const found = Object.keys(bodies).map((name) => sizes.map((size) => momentsOf(name, size)));
-  return [found, wheels.map((wheel) => doubtOf(wheel) !== null), wheels.map(criticalSpin)];
+  const {bodies, criticalSpin, momentsOf} = await import('#mechanics');
+  return [Object.keys(bodies).map((name) => sizes.map((size) => momentsOf(name, size))), wheels.map(criticalSpin)];
 }"""
 
 
-def test_moments_doubts_and_critical_spins_of_the_page_are_those_of_the_commands(live):
-    rng = np.random.default_rng(1)
-    sizes = [{"m": m, "r_0": r_0, "r": r} for m, r_0, r in rng.uniform([0.01, 0.1, 0], [30, 0.6, 0.1], (40, 3))]
-    largest = [[size["m"] * (size["r_0"] + size["r"]) ** 2] for size in sizes]
-    j = (rng.uniform(0, 1.2, (40, 3)) * largest).tolist()
-    wheels = [size | dict(zip(("J_x", "J_y", "J_z"), row, strict=True)) for size, row in zip(sizes, j, strict=True)]
-    wheels += [size | moments(name, **size) for size in sizes[:10] for name in bodies()]
-    found, doubts, spins = live.evaluate(SAME, [sizes, [wheel | {"g": 1.6} for wheel in wheels]])
+def test_moments_and_critical_spins_of_the_page_are_those_of_the_commands(live):
+    random = np.random.default_rng(1).uniform([0.01, 0.1, 0], [30, 0.6, 0.1], (40, 3))
+    sizes = [{"m": m, "r_0": r_0, "r": r} for m, r_0, r in random.tolist()]
+    wheels = [size | moments(name, **size) | {"g": 1.6} for size in sizes for name in bodies()]
+    found, spins = live.evaluate(SAME, [sizes, wheels])
     assert found == [[moments(name, **size) for size in sizes] for name in bodies()]
-    assert doubts == [bool(doubt(wheel)) for wheel in wheels]
-    assert 5 < sum(doubts) < len(doubts) - 5
-    expected = [critical_spin(replace(PAPER, g=1.6, **wheel)) for wheel in wheels]
+    expected = [critical_spin(replace(PAPER, **wheel)) for wheel in wheels]
     within(np.abs(np.divide(spins, expected) - 1).max(), 1e-14, "critical spin, relative")

@@ -16,7 +16,7 @@ from wheelfmu.diagrams.start_values import PAPER_S, ROOT, preset, scale, thrown,
 from wheelfmu.diagrams.start_values import bodies as ready_bodies
 from wheelfmu.diagrams.start_values import variables as described
 from wheelfmu.fmu.outputs import fresh
-from wheelfmu.fmu.values import HUB, POINTS, ROUNDING
+from wheelfmu.fmu.values import POINTS
 from wheelfmu.page.bodies import Body
 
 WEB = Path(__file__).parent / "web"
@@ -88,11 +88,10 @@ def moving_wheels() -> dict[str, dict]:
 
 
 def wheel_itself(wasm: Path) -> dict:
-    """What the live page holds: the wheel as a WebAssembly module, presets, bodies and constants."""
+    """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
     (guid,) = re.findall(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    constants = {"HUB": HUB, "ROUNDING": ROUNDING, "POINTS": POINTS}
-    wheel = {"wasm": base64_of(wasm.read_bytes()), "guid": guid}
-    return wheel | {"wheels": moving_wheels(), "bodies": ready_bodies()} | constants
+    made = {"wheels": moving_wheels(), "bodies": ready_bodies(), "POINTS": POINTS}
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid} | made
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:

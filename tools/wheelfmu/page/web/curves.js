@@ -24,8 +24,7 @@ const moves = (wheels, name) => wheels.some(({table}) => {
   return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
 });
 /**
- * fits(wheels): whether a curve belongs to these; small: the unit of a thousandth, where the values are small. A second
- * value is dashed.
+ * fits(wheels): whether a curve belongs to these. A second value is dashed.
  */
 export const CURVES = [
   curve(
@@ -44,12 +43,12 @@ export const CURVES = [
       {fits: (wheels) => wheels.some(brakes)}),
   curve(
       'N', 'N', 0, ['lambda_3'], 'Normal force of the ground', ([N]) => [N],
-      {small: 'mN', fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'lambda_3')}),
+      {fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'lambda_3')}),
   curve(
       'M_guide e_1, ┄ e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
       'Moment of the wheel carrier on the wheel along e1, and dashed along e2,', (both) => both,
       {fits: (wheels) => wheels.some((wheel) => guided(wheel) && acts(wheel))}),
-  curve('E', 'J', 2, ['E'], 'Total energy', ([E]) => [E], {small: 'mJ'}),
+  curve('E', 'J', 2, ['E'], 'Total energy', ([E]) => [E]),
 ];
 /** even: both axes have one scale. */
 export const PORTRAITS = {

@@ -6,7 +6,6 @@ import {clearCanvas, colour, fixed, make, makeChoice, subscripted, write} from '
 import {before, extent} from '#table';
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [48, 8, 10, 20];  // margins, CSS pixels
-const SMALL = 0.5;                                   // of a unit, below which values are in thousandths
 const BAR = 4;                                       // CSS pixels, where held or sliding
 const DASHES = [5, 4];
 const KEYS = 40;  // strokes of an arrow key draw a guess from start to end
@@ -26,7 +25,7 @@ function ticksOf([low, high], count) {
 /** The bounds of an axis that shows low to high; a quantity that hardly changes is a line, not its last digit. */
 function bounds(low, high) {
   if (!(low <= high)) return [0, 1];
-  const least = 1e-3 * Math.max(1, Math.abs(low), Math.abs(high));
+  const least = 1e-3 * Math.max(1e-3, Math.abs(low), Math.abs(high));
   const pad = 0.06 * Math.max(high - low, least) + 0.5 * Math.max(0, least - (high - low));
   return [low - pad, high + pad];
 }
@@ -88,10 +87,7 @@ class Diagram {
     this.name = this.possible.includes(name) ? name : this.possible[0] ?? this.name;
     Object.assign(this, {all: wheels, wheels: showing(this.kind)});
     const [across, up] = this.kind.units;
-    const values = this.kind.small ? this.wheels.flatMap(({table}) => extent(table.shown[this.kind.columns[1]])) : [];
-    const small = Math.max(...values.map(Math.abs)) < SMALL && values.length > 0;
-    this.factor = small ? 1000 : 1;
-    this.unit.textContent = small ? this.kind.small : this.timed || across === up ? up : '';
+    this.unit.textContent = this.timed || across === up ? up : '';
     this.canvas.title = this.canvas.ariaLabel = this.kind.what;
     if (this.timed) return;
     const buttons = this.possible.map((other) => ({name: other, title: this.kinds[other].what}));
@@ -112,16 +108,14 @@ class Diagram {
   /** A wheel's point at t. */
   at(wheel, t) {
     const now = Math.min(t, wheel.table.end);
-    return this.scaled(this.kind.point(this.kind.columns.map((name) => wheel.table.value(name, now)), wheel));
+    return this.kind.point(this.kind.columns.map((name) => wheel.table.value(name, now)), wheel);
   }
-
-  scaled([x, ...all]) { return [x, ...all.map((value) => this.factor * value)]; }
 
   /** All points of a wheel with their instants {times, points}: its rows, or its path, which is denser. */
   line(wheel) {
     if (this.kind.even) return wheel.trace;
     const columns = this.kind.columns.map((name) => wheel.table.shown[name]);
-    const point = (t, i) => this.scaled(this.kind.point(columns.map((column) => column[i]), wheel));
+    const point = (t, i) => this.kind.point(columns.map((column) => column[i]), wheel);
     return {times: wheel.table.time, points: Array.from(wheel.table.time, point)};
   }
 

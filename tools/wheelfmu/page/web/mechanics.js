@@ -1,13 +1,9 @@
-// The wheel's mechanics as far as the page itself computes it. Moments of inertia: those of the bodies
-// (examples/bodies.json), which follow from mass and radii, and whether any mass within the wheel's outline has the
-// given ones, as in tools/wheelfmu/fmu/values.py; the critical spin. SI.
+// The wheel's mechanics as far as the page itself computes it: moments of inertia of the bodies (examples/bodies.json),
+// which follow from mass and radii; the critical spin; the moments about e1. SI.
 import {live} from '#dom';
 
-/**
- * bodies {name: {title, source, J_x, J_z}}: the moments over m, as parts of the squares of lengths; HUB, ROUNDING and
- * POINTS of values.py.
- */
-export const {bodies = {}, HUB, ROUNDING, POINTS} = live ?? {};
+/** bodies {name: {title, source, J_x, J_z}}: the moments over m, as parts of the squares of lengths. */
+export const {bodies = {}, POINTS} = live ?? {};
 export const MOMENTS = ['J_x', 'J_y', 'J_z'];
 
 /** {J_x, J_y, J_z} of a body. */
@@ -20,21 +16,6 @@ export function momentsOf(name, {m, r_0, r}) {
   const [J_x, J_z] = ['J_x', 'J_z'].map(
       (moment) => m * Object.entries(bodies[name][moment]).map(term).reduce((sum, value) => sum + value, 0));
   return {J_x, J_y: J_x, J_z};
-}
-
-/** One sentence if no mass within the outline, the convex hull of the torus, has these moments; else null. */
-export function doubtOf({m, r_0, r, J_x, J_y, J_z}) {
-  const across = Math.max(0, (J_x + J_y - J_z) / 2);  // m times the mean square of the distance from the wheel's plane
-  const apart = Math.sqrt(Math.max(r * r - across / m, 0));
-  const widest = across <= m * r * r ? r_0 + apart : r_0 + r;  // beyond a thin tube are hub and spokes
-  const faults = [
-    ['J_z', J_z, m * widest ** 2],
-    ['(J_x + J_y − J_z)/2', across, m * Math.max(r, HUB * (r_0 + r)) ** 2],
-  ];
-  const fault = faults.find(([, moment, most]) => moment > most + ROUNDING * (J_x + J_y + J_z));
-  if (!fault) return null;
-  const [moment, most] = fault.slice(1).map((value) => Number(value.toPrecision(4)));
-  return `${fault[0]} = ${moment} kg m² is more than ${most} kg m²: no mass within the wheel's outline has it.`;
 }
 
 /**

@@ -4,7 +4,7 @@ import {setUpBalance} from '#balance';
 import {$, DEGREES, fixed, make, makeButton, makeChoice, onChange, say, subscripted} from '#dom';
 import {setUpFates} from '#fates';
 import {GRIP, HELD, NOW, shownLimits, START, STEERING, torqueOf, WHEEL} from '#knobs';
-import {bodies, criticalSpin, doubtOf} from '#mechanics';
+import {bodies, criticalSpin} from '#mechanics';
 import {scenes} from '#scenes';
 import {setUpStory} from '#story';
 import {slipOf, tipsByRounding} from '#table';
@@ -206,10 +206,9 @@ function setUpNotes(live) {
     say(message, live.trouble ?? `${seconds} s computed in ${live.took.toFixed(0)} ms, here in the page.`);
     message.classList.toggle('trouble', Boolean(live.trouble));
     say(refusal, live.refusal);
-    const fault = doubtOf(wheel);
     const chance = tipsByRounding(live.wheel.table) &&
         'Rounding alone tips this exactly upright wheel and decides time and side. On its wheel carrier (guided) it stays upright.';
-    say(doubt, fault ? `${fault} Choose a body: its moments follow.` : chance || '');
+    say(doubt, chance || '');
   };
 }
 
