@@ -19,7 +19,7 @@ TURN = {"psi_dot_guide": (0.4, 2.0, -1.5, 0.7), "theta_dot_guide": (-0.3, 0.5, 0
 
 
 def push(w: FMU2Wheel, slope: float) -> None:
-    w.give({name: (0.3 * (k + 1), slope * (1 - 0.4 * k)) for k, name in enumerate(LOADS)})
+    w.give({name: (0.3 * (k + 1), slope * (1 - 0.4 * k), 0.2 * k, -0.1) for k, name in enumerate(LOADS)})
 
 
 @pytest.mark.parametrize("scene", SCENES)

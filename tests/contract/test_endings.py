@@ -52,31 +52,6 @@ def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_i
     assert w.start().run([2.0]) == wheel().start().run([2.0])
 
 
-def test_a_fall_that_rounding_decided_is_logged_as_such(wheel):
-    upright = {"theta_start": np.pi / 2, "phi_dot_start": 0.0}
-    for lean, sentences in ((0.0, 2), (1e-9, 1)):
-        w = wheel().start(**upright | {"theta_start": np.pi / 2 - lean})
-        assert w.step(20.0) == DISCARD
-        texts = [message.text for message in w.take_messages()]
-        assert len(texts) == sentences and "lies flat" in texts[-1]
-        assert ("The wheel started exactly upright" in texts[0]) == (lean == 0)
-    assert wheel().start(**upright, guided=True).step(20.0) == OK
-
-
-def test_a_restored_ending_is_still_an_ending_in_any_instance(wheel):
-    w, other = wheel().start(**DROP).to(0.5), wheel().start()
-    assert (w.status(DO_STEP_STATUS), w.status(LAST_SUCCESSFUL_TIME), w.status(TERMINATED)) == (OK, 0.5, 0)
-    before = w.serialized()
-    assert w.step(10.0) == DISCARD
-    end, bits = ended(w), w.bits()
-    other.back(w.serialized()).take_messages()
-    assert (other.bits(), other.step(0.0), other.status(TERMINATED)) == (bits, ERROR, 1)
-    assert "lies flat" in other.said()
-    other.back(before)  # the partner: a state from before leads on, to the same end
-    assert (other.status(TERMINATED), other.step(0.0), other.step(0.05)) == (0, OK, OK)
-    assert (other.step(1.0), other.status(LAST_SUCCESSFUL_TIME), other.bits()) == (DISCARD, end, bits)
-
-
 @pytest.mark.parametrize("values", [{}, {"s": 0.03}], ids=["unfolded", "stepped"])
 def test_a_terminated_wheel_is_read_where_it_stopped(wheel, values):
     read, unread = (wheel().start(**values).by(1.0) for _ in range(2))

@@ -84,15 +84,6 @@ def test_a_tolerance_beyond_the_limits_is_clamped_with_one_warning(wheel, given,
     assert at_limit.take_messages() == w.take_messages() == []
 
 
-def test_a_guided_wheel_that_keeps_the_papers_heading_and_tilt_logs_it_once(wheel):
-    w = wheel().start(guided=True, phi_dot_start=-20.0)
-    ((status, category, text),) = w.take_messages()
-    assert (status, category) == (WARNING, "logStatusWarning") and "psi_start = 0 and theta_start = pi/2" in text
-    assert w.by(0.1).take_messages() == []
-    for meant in ({"psi_start": 0.0}, {"theta_start": np.pi / 2}, {"guided": False}):
-        assert wheel().start(**{"guided": True, "phi_dot_start": -20.0} | meant).take_messages() == []
-
-
 def test_experiments_that_make_no_sense_are_refused_and_an_infinite_stop_time_is_none(wheel):
     w = wheel()
     for tolerance, start, stop in [(None, np.nan, None), (None, 0, -1), (None, 0, np.nan), (-1e-6, 0, None)]:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel
-from wheelfmu.truth.sliding import HUB, ROAD, UPRIGHT
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING
+from wheelfmu.truth.sliding import ROAD, UPRIGHT
 
 WEIGHT, g = 20 * 9.81, 9.81
 LOCKED = {**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3}
@@ -29,23 +29,6 @@ def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> Non
     in_force = wheel().back(w.serialized())
     assert in_force.to(0.6).bits() == w.to(0.6).bits()
     within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1024 * 7 * EPSILON, "velocity later, m/s")
-
-
-@pytest.mark.parametrize("start", [7.0, -100.0])
-def test_every_message_of_a_slide_has_the_callers_time_and_its_own_number(wheel, start: float) -> None:
-    w, early = (wheel(logging=True).start(start=t, **ROAD).to(t + 2.5) for t in (start, 0.0))
-
-    def moments(one: FMU2Wheel) -> list[float]:
-        return [float(sentence.split()[2]) for sentence in one.sentences if "slid" in sentence]
-
-    assert len(moments(early)) == 4
-    within(absolute_error(np.array(moments(w)) - start, moments(early)), 16 * 100 * EPSILON, "instants apart, s")
-    jam = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
-    jammed = wheel().start(start=start, **jam, mu_max=0.9, mu_slide=0.8)
-    assert jammed.step(0.2) == DISCARD
-    text = jammed.sentences[-1]
-    assert "jam" in text and "mu_slide = 0.8 at" in text
-    assert start < float(text.split(" t = ")[1].split()[0]) < start + 0.2
 
 
 def test_a_road_on_which_the_wheel_would_jam_is_warned_of_where_its_forces_are_read_and_ends_the_run(wheel) -> None:

@@ -1,6 +1,5 @@
 """The carrier's rates as inputs: when they act, until when their derivatives count, refusals, states, derivatives."""
 
-from collections.abc import Iterator
 from math import cos
 
 import numpy as np
@@ -8,7 +7,7 @@ import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 from support.differences import difference
 
-from wheelfmu.fmu.driver import DISCARD, ERROR, MODEL_EXCHANGE, OK, FMU2Wheel
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, FMU2Wheel
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import GENERAL
@@ -84,34 +83,19 @@ def test_derivatives_count_until_something_is_set_after_their_step(
         within(absolute_error(held, [0.0, 0.0, 0.6, -0.25]), 1e-13, "held in the step after, rad/s")
 
 
-@pytest.fixture
-def refusing(library: Library) -> Iterator[dict[str, FMU2Wheel]]:
-    made = {"free": library.wheel(logging=True), "exchanged": exchange(library, **LEANS)}
-    made["free"].start(**{**LEANS, **FREE})
-    yield made
-    for wheel in made.values():
-        wheel.close()
-
-
-def test_only_a_guided_wheel_in_co_simulation_takes_them(library: Library, refusing: dict[str, FMU2Wheel]) -> None:
-    for wheel in refusing.values():
-        for name in RATES:
-            wheel.take_messages()
-            assert wheel.set(**{name: 0.1}) == DISCARD
-            assert wheel.said().endswith(
-                "only the carrier of a guided wheel turns, by co-simulation; the value stays 0."
-            )
-            assert wheel.set(**{name: 0.0}) == OK and wheel.get(name) == [0.0]
-    free = refusing["free"]
-    assert free.set_input_derivatives(["psi_dot_guide"], [[0.2]]) == ERROR
-    assert "derivative 1 = 0.2 of psi_dot_guide" in free.said()
-    for order, value in ((0, 0.1), (2, 0.1)):
-        w = library.wheel(logging=True)
-        assert w.set(**{**LEANS, **FREE, **({"psi_dot_guide": value} if order == 0 else {})}) == OK
-        if order:
-            assert w.set_input_derivatives(["theta_dot_guide"], [[0.0], [value]]) == OK
+def test_only_a_guided_wheel_in_co_simulation_takes_them(library: Library) -> None:
+    with library.wheel(logging=True) as free, exchange(library, **LEANS) as exchanged:
+        free.start(**{**LEANS, **FREE})
+        for w in (free, exchanged):
+            for name in RATES:
+                assert (w.set(**{name: 0.1}), w.set(**{name: 0.0})) == (DISCARD, OK) and w.get(name) == [0.0]
+        assert not exchanged.jacobian(("psi_dot", "v_x"), RATES).any()
+        assert free.set_input_derivatives(["psi_dot_guide"], [[0.2]]) == ERROR
+        assert "derivative 1 = 0.2 of psi_dot_guide" in free.texts()[-1]
+    with library.wheel() as w:
+        w.put(**{**LEANS, **FREE})
+        assert w.set_input_derivatives(["theta_dot_guide"], [[0.0], [0.1]]) == OK
         assert w.initialise() == ERROR and "only the carrier of a guided wheel turns" in w.said()
-        w.close()
 
 
 def test_absurd_rates_are_refused_and_the_largest_can_be_computed(library: Library) -> None:
@@ -173,9 +157,3 @@ def test_both_rates_jump_together_in_whatever_order_they_are_set(library: Librar
                 w.put(**rates)
             found.append(w.get(*ANSWERS))
     assert found[0] == found[1] == found[2]
-
-
-def test_model_exchange_has_the_inputs_at_zero(library: Library) -> None:
-    w = exchange(library, **LEANS)
-    assert w.kind == MODEL_EXCHANGE and w.get(*RATES) == [0.0, 0.0] and not w.jacobian(("psi_dot", "v_x"), RATES).any()
-    w.close()
