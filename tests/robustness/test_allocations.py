@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from wheelfmu.fmu.driver import ERROR, OK
-
 # formulation, friction law, method (4: Runge-Kutta): here every allocation is our own. SUNDIALS does not survive each
 # failure of one it makes (docs/decisions/package.md), so its methods are not played with.
 SCENES = {"reduced": (2, 1, 4), "multibody": (3, 1, 4), "reduced, regularized": (2, 2, 4)}
@@ -32,12 +30,3 @@ def test_no_failed_allocation_crashes_goes_unlogged_or_changes_a_later_bit(hook:
     done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=1800, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert int(done.stdout) >= 3  # the instance; a state; the state that bytes become
-
-
-def test_a_solver_that_gives_up_logs_its_reason_in_one_message_with_the_callers_time(wheel):
-    w = wheel().start(start=7.0, method=2)
-    assert (w.step(0.5), w.take_messages()) == (OK, [])
-    assert (w.set(M_3=1e300), w.step(0.5)) == (OK, ERROR)
-    (message,) = w.take_messages()
-    assert message.text.startswith("The solver stopped at t = 7.5 s, where omega_z = ")
-    assert "the step size became too small: extreme forces, or a communication step too long" in message.text
