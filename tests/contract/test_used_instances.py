@@ -44,7 +44,10 @@ def answers(w: FMU2Wheel) -> list[object]:
 
 
 def reset(w: FMU2Wheel) -> FMU2Wheel:
+    """All that was set is as at first, what fmi2SetupExperiment sets too."""
     assert w.reset() == OK
+    with w.new() as fresh:
+        assert w.serialized() == fresh.serialized()
     w.take_messages()
     return w
 
@@ -168,6 +171,14 @@ def test_whatever_an_instance_did_it_is_as_a_fresh_one_after_a_reset_and_in_a_re
         live(reset(w))
         assert answers(reset(w).start(**values)) == fresh, name
     assert ahead[0] != ahead[1] != ahead[2]
+
+
+def test_an_orbit_that_ends_where_grip_is_lost_is_not_that_of_a_wheel_that_can_slide(wheel):
+    """Both without sliding friction: the second had some at its start."""
+    w, fresh = wheel().start(mu_max=0.45), wheel()
+    assert w.step(1.0) == DISCARD
+    ends = [each.start(mu_max=0.45, mu_slide=0.4).put(mu_slide=0.0).to(1.0).bits() for each in (reset(w), fresh)]
+    assert ends[0] == ends[1] and w.get("contact_mode") == [1]
 
 
 def test_what_is_logged_once_per_run_is_logged_in_each_run_of_an_instance(wheel):
