@@ -65,8 +65,10 @@ def test_after_a_run_with_any_one_other_parameter_a_run_is_that_of_a_fresh_insta
     values, w, differed = BASES[base], wheel(), 0
     fresh, own = answers(wheel().start(**values)), used(wheel(), values)
     for name, other in OTHERS.items():
-        differed += used(w, values | {name: other}) != own
+        alone = used(wheel(), values | {name: other})
+        assert used(w, values | {name: other}) == alone, name
         assert answers(reset(w).start(**values)) == fresh, name
+        differed += alone != own
         reset(w)
     assert differed > 15  # the partner: most of the runs before are others
 
@@ -77,7 +79,7 @@ def test_after_another_tolerance_start_or_stop_time_a_run_is_that_of_a_fresh_ins
     for own in ({}, {"tolerance": 1e-10}):
         fresh = answers(wheel().start(**own, **values))
         for other in ({"tolerance": 1e-6}, {"tolerance": 1e-11}, {"start": 5.0, "stop": 6.0}):
-            assert used(w, values, **other)
+            assert used(w, values, **other) == used(wheel(), values, **other) != b""
             assert answers(reset(w).start(**own, **values)) == fresh
             reset(w)
     assert fresh != answers(w.start(**values))  # the partner: the tolerance shows
