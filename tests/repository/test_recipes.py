@@ -35,7 +35,7 @@ LINE = {
 
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
   WheelKinematics now;
-  setup.formulation->kinematics(&setup.wheel, y, &now);
+  setup.formulation->kinematics(&setup.scene.wheel, y, &now);
   return (setup.Y_O.whole(now.Y_O) + 0.1) / setup.length;
 }
 """,

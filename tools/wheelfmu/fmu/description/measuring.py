@@ -10,16 +10,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from ctypes import c_double
+from contextlib import contextmanager
 from math import cos
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from fmpy import extract, instantiate_fmu, read_model_description
-from fmpy.fmi1 import FMICallException
-from fmpy.model_description import Unknown
+from fmpy import extract, read_model_description
+from fmpy.model_description import ModelDescription, Unknown
+
+from wheelfmu.fmu.driver import CO_SIMULATION, MODEL_EXCHANGE, STATES, WARNING, FMU2Wheel, Values
 
 from .numbering import Dependencies
 
@@ -31,7 +31,7 @@ UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
 LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
 GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
-PLAIN: dict[str, float] = {}
+PLAIN: Values = {}
 SCENES = (
     PLAIN,
     {**UNEQUAL, "s": 0.03},
@@ -50,48 +50,35 @@ ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed
 
 class Unit:
     """One instance with the values of a scene: in initialization mode, or running, by model exchange in continuous-time
-    mode."""
+    mode; `refused` where the scene does not begin, `ended` where it ends at once."""
 
-    def __init__(self, folder: str, kind: str, scene: dict[str, float], runs: bool) -> None:
-        self.description = read_model_description(folder, validate=False)
-        self.variables = {v.name: v for v in self.description.modelVariables}
-        self.states: list[str] = []  # in continuous-time mode
-        self.fmu = instantiate_fmu(folder, self.description, kind)
-        self.fmu.setDebugLogging(False, [])
-        for name, value in scene.items():
-            self.put(name, value)
-        self.fmu.setupExperiment()
-        self.fmu.enterInitializationMode()
-        if runs:
-            self.fmu.exitInitializationMode()
-        if runs and kind == "ModelExchange":
-            _, self.ended, *_ = self.fmu.newDiscreteStates()
-            self.fmu.enterContinuousTimeMode()
-            self.states = [row.variable.derivative.name for row in self.description.derivatives]
+    def __init__(self, loaded: FMU2Wheel, kind: int, scene: Values, runs: bool) -> None:
+        loaded.kind, self.ended = kind, False
+        self.states: tuple[str, ...] = ()
+        self.wheel = loaded.new()
+        statuses = [self.wheel.set(**scene), self.wheel.setupExperiment(), self.wheel.enterInitializationMode()]
+        statuses += [self.wheel.exitInitializationMode()] if runs else []
+        self.refused = max(statuses) > WARNING
+        if runs and kind == MODEL_EXCHANGE and not self.refused:
+            self.ended, self.states = bool(self.wheel.decide().terminateSimulation), STATES
+            self.wheel.enterContinuousTimeMode()
 
-    def get(self, names: list[str]) -> np.ndarray:
-        found = [self.variables[name] for name in names]
-        return np.array([getattr(self.fmu, f"get{v.type}")([v.valueReference])[0] for v in found], float)
-
-    def put(self, name: str, value: float) -> None:
-        v = self.variables[name]
-        if name in self.states:
-            x = (c_double * len(self.states))()
-            self.fmu.getContinuousStates(x, len(x))
-            x[self.states.index(name)] = value
-            self.fmu.setContinuousStates(x, len(x))
-        else:
-            getattr(self.fmu, f"set{v.type}")([v.valueReference], [value if v.type == "Real" else int(value)])
+    def put(self, name: str, value: float) -> int:
+        if name not in self.states:
+            return self.wheel.set(**{name: value})
+        x = self.wheel.x()
+        x[STATES.index(name)] = value
+        return self.wheel.ask("SetContinuousStates", x, len(x))
 
     def depends(self, unknowns: list[Unknown], *causalities: str) -> dict[str, set[str]]:
         """Of each unknown: the states and the variables of these causalities that move it. Under "": those of them that
         can be changed."""
-        knowns = [name for name, v in self.variables.items() if v.causality in causalities or name in self.states]
+        knowns = [name for name, v in self.wheel.variables.items() if v.causality in causalities or name in self.states]
         names = [row.variable.name for row in unknowns]
         found: dict[str, set[str]] = {name: set() for name in names}
-        before = self.get(names)
+        before = np.array(self.wheel.get(*names))
         for known in knowns:
-            (value,) = self.get([known])
+            (value,) = self.wheel.get(known)
             after = self.get_with(known, value, names)
             self.put(known, value)
             if after is None:
@@ -104,73 +91,79 @@ class Unit:
     def get_with(self, known: str, value: float, names: list[str]) -> np.ndarray | None:
         """These variables with another value of one; None where the wheel starts with no other. A real number changes a
         little, downwards where it can be no larger; a choice changes to its last value or from there to its first."""
-        v = self.variables[known]
-        first, last = float(v.min or 0), float(v.max or 1)
-        others = (value * 1.01 + 1e-3, value * 0.99 - 1e-3) if v.type == "Real" else (first if value == last else last,)
+        v = self.wheel.variables[known]
+        first, last = (int(float(limit or other)) for limit, other in ((v.min, 0), (v.max, 1)))
+        choice = first if value == last else last
+        others = (value * 1.01 + 1e-3, value * 0.99 - 1e-3) if v.type == "Real" else (choice,)
         for other in others:
-            with suppress(FMICallException):
-                self.put(known, other)
-                return self.get(names)
+            if self.put(known, other) <= WARNING:
+                statuses, after = zip(*map(self.wheel.get_one, names), strict=True)
+                if max(statuses) <= WARNING:
+                    return np.array(after)
         return None
 
 
 @contextmanager
-def unit(folder: str, kind: str, scene: dict[str, float], runs: bool = True) -> Iterator[Unit]:
-    made = Unit(folder, kind, scene, runs)
+def unit(loaded: FMU2Wheel, kind: int, scene: Values, runs: bool = True) -> Iterator[Unit]:
+    made = Unit(loaded, kind, scene, runs)
     yield made
-    made.fmu.freeInstance()
+    made.wheel.close()
 
 
-def starts(folder: str, scene: dict[str, float]) -> bool:
+def starts(loaded: FMU2Wheel, scene: Values) -> bool:
     """Whether a run can begin and does not end there."""
-    with suppress(FMICallException), unit(folder, "ModelExchange", scene) as u:
-        return not u.ended
-    return False
+    with unit(loaded, MODEL_EXCHANGE, scene) as u:
+        return not u.refused and not u.ended
 
 
-def without_zeros(folder: str, scene: dict[str, float]) -> dict[str, float]:
+def without_zeros(loaded: FMU2Wheel, scene: Values) -> Values:
     """The scene with the start values of zero set to 0.1, one after the other, as far as the wheel starts."""
     scene = {**GENERAL, **scene}
-    for v in read_model_description(folder, validate=False).modelVariables:
-        if v.type == "Real" and v.start == "0" and v.name not in scene and starts(folder, {**scene, v.name: 0.1}):
+    for v in loaded.variables.values():
+        if v.type == "Real" and v.start == "0" and v.name not in scene and starts(loaded, {**scene, v.name: 0.1}):
             scene[v.name] = 0.1
     return scene
 
 
 def event_indicators(fmu: Path) -> int:
     """How many event indicators model exchange has: the one length of array that the FMU fills."""
-    with TemporaryDirectory() as folder, unit(extract(str(fmu), folder), "ModelExchange", {}) as u:
-        for count in range(1, 100):
-            with suppress(FMICallException):  # another length is refused
-                u.fmu.getEventIndicators((c_double * count)(), count)
-                return count
+    with TemporaryDirectory() as folder:
+        _, loaded = unpacked(fmu, folder)
+        with unit(loaded, MODEL_EXCHANGE, {}) as u:
+            for count in range(1, 100):
+                if u.wheel.ask("GetEventIndicators", [0.0] * count, count) <= WARNING:
+                    return count
     raise SystemExit("The FMU gives no event indicators.")
+
+
+def unpacked(fmu: Path, folder: str) -> tuple[ModelDescription, FMU2Wheel]:
+    description = read_model_description(extract(str(fmu), folder), validate=False)
+    return description, FMU2Wheel(folder, description)
 
 
 def measured(fmu: Path) -> Dependencies:
     """All dependencies of the FMU, by section of ModelStructure."""
     found: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     with TemporaryDirectory() as folder:
-        extract(str(fmu), folder)
-        for scene in (without_zeros(folder, changed) for changed in SCENES):
+        description, loaded = unpacked(fmu, folder)
+        for scene in (without_zeros(loaded, changed) for changed in SCENES):
             parts, turns = [], bool(scene.get("guided")) and scene["phi_dot_start"] == GENERAL["phi_dot_start"]
             turning = TURNING if turns else {}
             for slip in SLIPS:
                 driven = {**scene, **ROAD, **slip, **{f"{name}_guide": rate for name, rate in turning.items()}}
-                with unit(folder, "CoSimulation", driven, runs=False) as u:
-                    parts += [("InitialUnknowns", u.depends(u.description.initialUnknowns, "parameter", "input"))]
-                with unit(folder, "CoSimulation", driven) as u:
-                    parts += [("Outputs", u.depends(u.description.outputs, "input"))]
-            with unit(folder, "ModelExchange", scene) as u:
+                with unit(loaded, CO_SIMULATION, driven, runs=False) as u:
+                    parts += [("InitialUnknowns", u.depends(description.initialUnknowns, "parameter", "input"))]
+                with unit(loaded, CO_SIMULATION, driven) as u:
+                    parts += [("Outputs", u.depends(description.outputs, "input"))]
+            with unit(loaded, MODEL_EXCHANGE, scene) as u:
                 for name, rate in turning.items():
                     u.put(name, rate)
-                parts += [("Outputs", u.depends(u.description.outputs, "input"))]
-                parts += [("Derivatives", u.depends(u.description.derivatives, "input"))]
+                parts += [("Outputs", u.depends(description.outputs, "input"))]
+                parts += [("Derivatives", u.depends(description.derivatives, "input"))]
             for section, unknowns in parts:
                 for name, moved in unknowns.items():
                     found[section][name] |= moved
-        variables = read_model_description(folder, validate=False).modelVariables
-    knowns = {v.name for v in variables if v.causality in ("parameter", "input")}
+    knowns = {v.name for v in description.modelVariables if v.causality in ("parameter", "input")}
     if stuck := knowns - found["InitialUnknowns"][""]:
         raise SystemExit(f"No scene lets {', '.join(sorted(stuck))} be changed.")
     for of_section in found.values():
