@@ -55,30 +55,30 @@ def bury() -> None:
                     os.waitpid(pid, os.WNOHANG)
 
 
-def start(*words: str | Path, **how: Any) -> subprocess.Popen:
+def start(*words: object, **how: Any) -> subprocess.Popen:
     with starting:
         one = subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
         STARTED.add(one.pid)
     return one
 
 
-def status(*words: str | Path, **how: Any) -> int:
+def status(*words: object, **how: Any) -> int:
     """Runs a program to its end."""
     return start(*words, **how).wait()
 
 
-def check(*words: str | Path, **how: Any) -> None:
+def check(*words: object, **how: Any) -> None:
     """The same; Failed where it fails."""
     if code := status(*words, **how):
         raise Failed(code if code > 0 else 128 - code)
 
 
-def python(module: str, *words: str | Path) -> list[str]:
+def python(module: str, *words: object) -> list[str]:
     """Words that run a module of this interpreter, whatever is in the current folder."""
     return [sys.executable, "-P", "-m", module, *map(str, words)]
 
 
-def command(name: str, *words: str | Path) -> list[str]:
+def command(name: str, *words: object) -> list[str]:
     """Words that run another command."""
     return python("wheelfmu", name, *words)
 

@@ -305,9 +305,9 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
     # Model exchange: vectors in the order of STATES, DERIVATIVES and INDICATORS; events that are added come last.
 
     def vector(self, what: str, size: int = len(STATES)) -> Array:
-        values = np.zeros(size)
-        assert self.ask(f"Get{what}", (c_double * size).from_buffer(values), size) == OK
-        return values
+        values = (c_double * size)()
+        assert self.ask(f"Get{what}", values, size) == OK
+        return np.array(values)
 
     def x(self) -> Array:
         return self.vector("ContinuousStates")

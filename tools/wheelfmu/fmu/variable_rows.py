@@ -23,12 +23,12 @@ BOOLEAN = {"false": "0", "true": "1"}
 
 def check(variables: list[ElementTree.Element]) -> None:
     """One sentence for a description that the rows cannot follow."""
-    roles = [ROLES.index(v.get("causality")) for v in variables]
-    if [int(v.get("valueReference")) for v in variables] != list(range(len(variables))) or roles != sorted(roles):
+    roles = [ROLES.index(v.attrib["causality"]) for v in variables]
+    if [int(v.attrib["valueReference"]) for v in variables] != list(range(len(variables))) or roles != sorted(roles):
         order = ", ".join(ROLES)
         raise SystemExit(f"modelDescription.xml must number its variables from 0 and list them in the order {order}.")
     for v in variables:
-        if v[0].tag not in TYPES or not re.fullmatch(r"[A-Za-z]\w*", v.get("name")):
+        if v[0].tag not in TYPES or not re.fullmatch(r"[A-Za-z]\w*", v.attrib["name"]):
             raise SystemExit(f'The rows cannot have "{v.get("name")}" of type {v[0].tag} in modelDescription.xml.')
 
 
@@ -39,9 +39,9 @@ def row(variable: ElementTree.Element) -> str:
         return f"COMPUTED({name}, {kind}, {role})\n"
     if variable.get("variability") == "tunable":
         role = "tunable"
-    start = BOOLEAN.get(typed.get("start"), typed.get("start"))
+    start = typed.attrib["start"]
     low, high = ("0", "1") if kind == "boolean" else (typed.get("min", "-unlimited"), typed.get("max", "unlimited"))
-    return f"STORED({name}, {kind}, {role}, {start}, {low}, {high})\n"
+    return f"STORED({name}, {kind}, {role}, {BOOLEAN.get(start, start)}, {low}, {high})\n"
 
 
 if __name__ == "__main__":

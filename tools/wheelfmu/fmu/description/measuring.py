@@ -29,10 +29,14 @@ GENERAL = {
 }
 UNEQUAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}
 # omega_z below omega_s, where the regularized law is neither zero nor one
-LAW = {"s": 0.03, "friction_law": 2, "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4}
+LAW: Values = {
+    "s": 0.03,
+    "friction_law": 2,
+    "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4,
+}
 GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
 PLAIN: Values = {}
-SCENES = (
+SCENES: tuple[Values, ...] = (
     PLAIN,
     {**UNEQUAL, "s": 0.03},
     LAW,

@@ -44,9 +44,9 @@ def dependencies_of(root: ElementTree.Element, names: Callable[[str], list[str]]
     """The dependencies that the description declares, by name."""
     return {
         section.tag: {
-            name: names(row.get("dependencies"))
+            name: names(row.attrib["dependencies"])
             for row in section.iterfind("*[@dependencies]")
-            for name in names(row.get("index"))
+            for name in names(row.attrib["index"])
         }
         for section in root.iterfind("ModelStructure/*")
     }
@@ -56,7 +56,7 @@ def unknowns_of(root: ElementTree.Element, names: Callable[[str], list[str]]) ->
     """The unknowns of each section of ModelStructure; derivatives in their order there, new ones last."""
     variables = {v.attrib["name"]: v for v in root.iter("ScalarVariable")}
     state_of = {name: state for name, v in variables.items() for state in names(v[0].get("derivative", ""))}
-    known = [n for row in root.iterfind("ModelStructure/Derivatives/Unknown") for n in names(row.get("index"))]
+    known = [n for row in root.iterfind("ModelStructure/Derivatives/Unknown") for n in names(row.attrib["index"])]
     derivatives = [name for name in dict.fromkeys([*known, *state_of]) if name in state_of]
     outputs = [name for name, v in variables.items() if v.get("causality") == "output"]
     follow = {*outputs, *state_of, *state_of.values()}  # at the start, where they are calculated
@@ -86,7 +86,7 @@ def numbered(text: str, depends: Dependencies | None = None) -> str:
     """The description with all its numbers and its GUID; dependencies as given, else those that it declares."""
     root = ElementTree.fromstring(text.encode())
     names = names_by_index(root)
-    index = {v.get("name"): place for place, v in enumerate(root.iter("ScalarVariable"), 1)}
+    index = {v.attrib["name"]: place for place, v in enumerate(root.iter("ScalarVariable"), 1)}
     text = TAG.sub(lambda tag: f'<ScalarVariable name="{tag[1]}" valueReference="{index[tag[1]] - 1}"', text)
     text = re.sub(r' derivative="([^"]*)"', lambda found: f' derivative="{index[names(found[1])[0]]}"', text)
     known = dependencies_of(root, names) if depends is None else depends
