@@ -11,14 +11,13 @@ from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK
 from wheelfmu.truth import sliding
-from wheelfmu.truth.cases import error
 from wheelfmu.truth.closed_forms import circle
 from wheelfmu.truth.errors import kind_errors
 from wheelfmu.truth.motion import Library, Run, start_values
 from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.reference import Wheel
 from wheelfmu.truth.reference.judge import carrier_axes, momenta
-from wheelfmu.truth.scenes import THETA_0, Scene
+from wheelfmu.truth.scenes import Scene
 from wheelfmu.truth.schedule import Schedule
 from wheelfmu.truth.sliding import HUB, ROAD, SLIDES, UPRIGHT, random_slide
 
@@ -94,29 +93,6 @@ def test_with_hardly_any_friction_the_sliding_disc_keeps_its_momenta(library: Li
 
 
 # ---- the independent reference ----
-
-
-def growth(library: Library, scene: Scene) -> float:
-    """Of errors of the start: the largest change of an output over that of theta, spin or slip."""
-    off, times = 1e-8, np.linspace(0, scene.duration, 51)
-    start = {"theta_start": THETA_0, "phi_dot_start": -2.0, "slip_x_start": 0.0} | scene.start
-    moved = [name for name in ("theta_start", "phi_dot_start", "slip_x_start") if name in scene.start or start[name]]
-    ends = [simulate(library, scene, times, 1e-12, **{name: start[name] + off}) for name in moved]
-    exact = simulate(library, scene, times, 1e-12)
-    return max(error / off for end in ends for error in kind_errors(end, exact, 1.0).values())
-
-
-@all_slides
-def test_the_error_of_every_output_of_a_slide_stays_below_three_tolerances(library: Library, name: str) -> None:
-    """Where an error of the start grows more than a hundredfold, by so much more. At 1e-11 the reference's counts."""
-    scene = SLIDES[name]
-    grown = max(1.0, growth(library, scene) / 100)
-    for formulation in (2, 3):
-        for tolerance, most in ((1e-5, 3), (1e-8, 3), (1e-10, 3), (1e-11, 10)):
-            off = error(library, scene, tolerance, 1.0, formulation=formulation)
-            within(off / tolerance, most * grown, f"error of formulation {formulation}, in tolerances of {tolerance:g}")
-    slower = {"mu_slide": scene.road.mu_slide * (1 - 1e-6)}
-    beyond(error(library, scene, 1e-10, 1.0, **slower) / 1e-10, 100, "error with another coefficient, in tolerances")
 
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-8, 1e-10])
