@@ -26,6 +26,7 @@ import pandas as pd
 
 from wheelfmu.fmu.paths import ROOT, build_folder
 from wheelfmu.publishing.markdown import number, page, said
+from wheelfmu.truth import requirements
 from wheelfmu.truth.motion import Library
 
 RESULTS = ROOT / "docs" / "results"
@@ -35,7 +36,7 @@ Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib")
 SHORT = 15  # rows
 REDUCTIONS = ("max", "min", "median", "sum")
-REQUIREMENTS = pd.read_csv(Path(__file__).with_name("requirements.csv")).set_index(["report", "figure"])
+REQUIREMENTS = pd.read_csv(requirements.FILE).set_index(["report", "figure"])
 
 
 @dataclass
