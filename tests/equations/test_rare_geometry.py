@@ -11,11 +11,10 @@ from math import atan2, hypot, inf, pi
 
 import numpy as np
 import pytest
-from equations.test_sliding import Rows
 from support.bounds import beyond, within
 
 from wheelfmu.fmu import equations as eq
-from wheelfmu.truth.pointwise import Table, random_motions, random_scenes
+from wheelfmu.truth.pointwise import Table, random_motions, random_scenes, sliding
 from wheelfmu.truth.reference.sliding_contact import Sliding, resting_directions
 
 Random = np.random.Generator
@@ -57,7 +56,7 @@ class State:
 
     def __init__(self, scene: Table, motion: Table) -> None:
         self.scene, self.motion, psi = scene, motion, float(motion["psi"][0])
-        self.found, self.mu, _ = Rows.by_reference(scene[0], motion[0])
+        self.found, self.mu, *_ = sliding(scene[0], motion[0])
         roots = resting_directions(self.found, self.mu)
         self.kept = [chi - psi for chi in roots if self.is_kept(self.found, self.mu, chi)]
         self.left = [chi - psi for chi in roots if not self.is_kept(self.found, self.mu, chi)]

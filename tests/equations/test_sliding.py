@@ -5,20 +5,17 @@ infinite. Errors relative to the largest entry of their group.
 """
 
 from ctypes import byref
-from dataclasses import replace
-from math import pi, tanh
+from math import pi
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu import equations as eq
-from wheelfmu.truth.pointwise import Table, distance, random_motions, random_scenes, relative
-from wheelfmu.truth.reference import Wheel
-from wheelfmu.truth.reference.frames import quaternion, rotation, to_body, to_fixed
-from wheelfmu.truth.reference.motion import angle_accelerations, body_rates
-from wheelfmu.truth.reference.newton_euler import Law, carrier_moment
-from wheelfmu.truth.reference.sliding_contact import Sliding, respond, resting_directions
+from wheelfmu.truth.pointwise import Table, distance, random_motions, random_scenes, relative, sliding
+from wheelfmu.truth.reference.frames import to_fixed
+from wheelfmu.truth.reference.motion import angle_accelerations
+from wheelfmu.truth.reference.sliding_contact import resting_directions
 
 ROWS = 3000
 FORMS = pytest.mark.parametrize("form", [eq.SLIDING, eq.MULTIBODY_SLIDING], ids=["reduced", "multibody"])
@@ -37,8 +34,8 @@ class Rows:
         for axis in ("slip_x", "slip_y"):
             self.motions[axis] = random.normal(size=ROWS) * 10 ** random.uniform(-6, 1, ROWS)
         self.chi = np.arctan2(self.motions["slip_y"], self.motions["slip_x"])
-        self.found = [self.by_reference(scene, motion) for scene, motion in zip(self.scenes, self.motions, strict=True)]
-        pushes = [found.push(mu, chi) for (found, mu, _), chi in zip(self.found, self.turned(), strict=True)]
+        self.found = [*map(sliding, self.scenes, self.motions)]
+        pushes = [found.push(mu, chi) for (found, mu, *_), chi in zip(self.found, self.turned(), strict=True)]
         self.judged = np.array([push.room > ROOM for push in pushes])
         self.pushes = pushes
 
@@ -46,29 +43,10 @@ class Rows:
         """Directions of slip from X."""
         return (self.chi + self.motions["psi"]).tolist()
 
-    @staticmethod
-    def by_reference(scene: Table, motion: Table) -> tuple[Sliding, float, tuple]:
-        """The answer, the coefficient of a ground that does not pull, and attitude and rotation."""
-        constants, friction, load = scene["wheel"], scene["friction"], scene["load"]
-        names = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
-        wheel = Wheel(**{name: float(constants[name]) for name in names})
-        R = rotation(*quaternion(*(float(motion[name]) for name in ("psi", "theta", "phi"))))
-        w = body_rates(R[2], *(float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot")))
-        weight = [wheel.m * float(g) for g in (constants["g_X"], constants["g_Y"], -constants["g"])]
-        F = to_body(R, tuple(a + b for a, b in zip(load["F"].tolist(), weight, strict=True)))
-        M = carrier_moment(R[2], tuple(load["M"].tolist()))
-        kind = int(friction["kind"])
-        sigma = [0.0, 0.0, float(friction["sigma"]), 0.0, tanh(w[2] / float(friction["omega_s"]))][kind]
-        law = Law(wheel.s, sigma, kind == eq.HELD, float(load["brake"]))
-        found = respond(wheel, R, w, F, M, law)
-        if found.base[6] > 0:
-            return found, float(scene["mu_slide"]), (R, w)
-        return respond(replace(wheel, s=0.0), R, w, F, M, law._replace(s=0.0)), 0.0, (R, w)
-
     def referenced(self) -> Table:
         """WheelDynamics."""
         out = eq.table(eq.Dynamics, ROWS)
-        for row, (found, _, (R, w)), push in zip(out, self.found, self.pushes, strict=True):
+        for row, (found, _, R, w), push in zip(out, self.found, self.pushes, strict=True):
             x = found.at(*push.force)
             for name, value in zip(("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), to_fixed(R, tuple(x[:3])), strict=True):
                 row[name] = value
@@ -157,7 +135,7 @@ def slips(rows: Rows, directions: Table) -> Table:
 
 def test_growth_turning_and_settling_of_a_slip_follow_from_three_quantities(rows: Rows) -> None:
     want = []
-    for (found, mu, _), push, chi in zip(rows.found, rows.pushes, rows.turned(), strict=True):
+    for (found, mu, *_), push, chi in zip(rows.found, rows.pushes, rows.turned(), strict=True):
         want.append((push.N, push.room, push.grow, push.turn, -found.turning(mu, chi)))
     got, judge, seen = slips(rows, rows.chi), np.array(want), rows.judged
     turned = slips(rows, rows.chi + 1e-6)
@@ -172,7 +150,7 @@ def test_a_slip_begins_in_the_direction_that_grows_and_is_kept(rows: Rows) -> No
     """Against the roots of a quartic, the nearest to the opposite of grip's force first; none where there is none."""
     reduced = eq.start_each(eq.REDUCED, rows.scenes, rows.motions)
     directions, none, count = [], 0, 0
-    for scene, y, (found, mu, _), psi in zip(rows.scenes, reduced, rows.found, rows.motions["psi"], strict=True):
+    for scene, y, (found, mu, *_), psi in zip(rows.scenes, reduced, rows.found, rows.motions["psi"], strict=True):
         record = eq.Scene.from_buffer_copy(scene.tobytes())
         got = eq.LIBRARY.wheel_slip_direction(byref(record), y.ctypes.data_as(eq.DOUBLES))
         record.mu_slide *= 1 + 1e-9

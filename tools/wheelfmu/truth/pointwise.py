@@ -7,11 +7,17 @@ relative to the largest entry of their group: accelerations of O, of the angles 
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from wheelfmu.fmu import equations as eq
 from wheelfmu.truth.reference import Wheel, accelerations
+from wheelfmu.truth.reference.frames import Matrix, quaternion, rotation, to_body
+from wheelfmu.truth.reference.model import Vector
+from wheelfmu.truth.reference.motion import body_rates, with_weight
+from wheelfmu.truth.reference.newton_euler import Law, carrier_moment
+from wheelfmu.truth.reference.sliding_contact import Sliding, respond
 
 Table = np.ndarray
 GROUPS = (("X_O_ddot", "Y_O_ddot", "Z_O_ddot"), ("psi_ddot", "theta_ddot", "phi_ddot", "omega_z_dot"), ("lambda_",))
@@ -91,24 +97,51 @@ def distance(a: Table, b: Table, scenes: Table) -> float:
     return max(errors)
 
 
-def answers(accelerations: Callable, scenes: np.ndarray, motions: np.ndarray) -> Iterator:
-    """By a function of (wheel, angles, rates, F, M, sigma, brake), which counts the weight of a level road: row by row.
+class Given(NamedTuple):
+    """One row as a function of it takes it that counts the weight of a level road; sigma None: held."""
 
-    Without pressure there is no friction but the brake's.
-    """
-    omega_z = motions["phi_dot"] + motions["psi_dot"] * np.cos(motions["theta"])
-    for scene, motion, spin in zip(scenes, motions, omega_z.tolist(), strict=True):
-        constants, friction = scene["wheel"], scene["friction"]
-        wheel = Wheel(**{name: float(constants[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")})
-        sigma = [0.0, friction["sigma"], None, np.tanh(spin / friction["omega_s"])][friction["kind"] - eq.FRICTIONLESS]
-        angles = [float(motion[name]) for name in ("psi", "theta", "phi")]
-        rates = [float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot")]
-        (F_X, F_Y, F_Z), M, brake = (scene["load"][name].tolist() for name in ("F", "M", "brake"))
-        F = (F_X + wheel.m * constants["g_X"], F_Y + wheel.m * constants["g_Y"], F_Z)  # with the weight along a slope
-        found = accelerations(wheel, angles, rates, F, M, sigma, brake)
-        if sigma is not None and found.lambda_3 <= 0:
-            found = accelerations(replace(wheel, s=0.0), angles, rates, F, M, sigma, brake)
+    wheel: Wheel
+    angles: Vector
+    rates: Vector
+    F: Vector  # with the weight along a slope
+    M: Vector
+    sigma: float | None
+    brake: float
+
+
+def given(scene: Table, motion: Table) -> Given:
+    constants, friction, load = scene["wheel"], scene["friction"], scene["load"]
+    wheel = Wheel(**{name: float(constants[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")})
+    angles = tuple(float(motion[name]) for name in ("psi", "theta", "phi"))
+    rates = tuple(float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot"))
+    soft = np.tanh((rates[2] + rates[0] * np.cos(angles[1])) / friction["omega_s"])
+    sigma = [0.0, float(friction["sigma"]), None, float(soft)][friction["kind"] - eq.FRICTIONLESS]
+    F_X, F_Y, F_Z = load["F"].tolist()
+    F = (F_X + wheel.m * float(constants["g_X"]), F_Y + wheel.m * float(constants["g_Y"]), F_Z)
+    return Given(wheel, angles, rates, F, tuple(load["M"].tolist()), sigma, float(load["brake"]))
+
+
+def answers(accelerations: Callable, scenes: np.ndarray, motions: np.ndarray) -> Iterator:
+    """By a function of Given, row by row. Without pressure there is no friction but the brake's."""
+    for row in map(given, scenes, motions):
+        found = accelerations(*row)
+        if row.sigma is not None and found.lambda_3 <= 0:
+            found = accelerations(*row._replace(wheel=replace(row.wheel, s=0.0)))
         yield found
+
+
+def sliding(scene: Table, motion: Table) -> tuple[Sliding, float, Matrix, Vector]:
+    """One row under any friction at the contact, by the reference; the coefficient, 0 where the ground pulls; attitude
+    and rotation."""
+    wheel, angles, rates, F, M, sigma, brake = given(scene, motion)
+    R = rotation(*quaternion(*angles))
+    w = body_rates(R[2], *rates)
+    loads = R, w, to_body(R, with_weight(wheel, F)), carrier_moment(R[2], M)
+    law = Law(wheel.s, sigma or 0.0, sigma is None, brake)
+    found = respond(wheel, *loads, law)
+    if found.base[6] > 0:
+        return found, float(scene["mu_slide"]), R, w
+    return respond(wheel, *loads, law._replace(s=0.0)), 0.0, R, w
 
 
 def referenced(scenes: np.ndarray, motions: np.ndarray) -> np.ndarray:
