@@ -5,36 +5,47 @@ again; a step that fails changes nothing."""
 
 from argparse import Namespace
 
-from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.paths import ROOT
 
 CHECK = "changes nothing and builds nothing; exit status 1 if a number or a table is stale"
 OPTIONS = {"--check": {"action": "store_true", "help": CHECK}}
+DESCRIPTION, FMU = ROOT / "modelDescription.xml", ROOT / "build" / "release" / "wheel.fmu"
 
 
-def number(*options: str) -> None:
-    processes.check(*processes.python("wheelfmu.fmu.description", *options))
+def read() -> str:
+    return DESCRIPTION.read_text(encoding="utf-8")
 
 
-def tables(*options: str) -> None:
-    processes.check(*processes.python("wheelfmu.publishing.variables", *options))
+def write(text: str) -> None:
+    if text != read():  # else nothing is built anew
+        DESCRIPTION.write_text(text, encoding="utf-8")
 
 
-def main(given: Namespace) -> None:
+def renew() -> None:
+    from wheelfmu.fmu.description import measuring, numbering
+
+    write(numbering.numbered(read()))
+    build("release")
+    counted = numbering.with_event_indicators(read(), measuring.event_indicators(FMU))
+    write(numbering.numbered(counted, measuring.measured(FMU)))
+    build("release")
+
+
+def main(given: Namespace) -> int:
+    from wheelfmu.fmu.description import numbering
+    from wheelfmu.publishing import variables
+
+    kept = read()
     if given.check:
-        number("--check")
-        tables("--check")
-        return
-    description, done = ROOT / "modelDescription.xml", False
-    kept = description.read_bytes()
+        stale = numbering.numbered(kept) != kept
+        return int(variables.fill(check=True) or stale)
+    done = False
     try:
-        number()
-        build("release")
-        number("--measure", "build/release/wheel.fmu")
-        build("release")
-        tables()
+        renew()
+        variables.fill()
         done = True
     finally:
         if not done:
-            description.write_bytes(kept)
+            write(kept)
+    return 0

@@ -1,13 +1,9 @@
-"""Writes the variables of modelDescription.xml as tables into docs/variables.md and the FMU's documentation.
-
-With --check nothing is changed; the exit status is 1 where a page differs from the description.
-"""
+"""Writes the variables of modelDescription.xml as tables into docs/variables.md and the FMU's documentation."""
 
 from __future__ import annotations
 
 import html
 import re
-import sys
 from pathlib import Path
 
 from wheelfmu.diagrams.start_values import Variable
@@ -49,8 +45,9 @@ def with_tables(text: str, variables: list[Variable], place: Path) -> str:
     return PLACE.sub(lambda found: f"{found[1]}\n\n{tables(variables, place.suffix)}\n\n{found[2]}", text)
 
 
-def main() -> int:
-    check, known = sys.argv[1:] == ["--check"], read_variables()
+def fill(check: bool = False) -> bool:
+    """Whether a page differs from the description; it is filled, unless it is to be checked alone."""
+    known = read_variables()
     texts = {place: place.read_text(encoding="utf-8") for place in PAGES}
     filled = {place: with_tables(text, known, place) for place, text in texts.items()}
     # All of them are filled before the first is written.
@@ -59,8 +56,4 @@ def main() -> int:
         print(f"{'Stale' if check else 'Filled'}: {place.relative_to(ROOT)}")
         if not check:
             place.write_text(filled[place], encoding="utf-8")
-    return int(check and bool(stale))
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return bool(stale)
