@@ -5,6 +5,7 @@ whose value stays, a layer, an event that is known and not reached, a brake, a c
 
 import re
 from collections.abc import Callable
+from math import cos
 from typing import NamedTuple
 
 import pytest
@@ -19,7 +20,8 @@ Inputs = dict[str, tuple[float, ...]]
 
 class Meeting(NamedTuple):
     """A scene under inputs from its start, `how` they are set: once; again at each step, as one polynomial that is cut;
-    or anew at each step with a polynomial of its own. `meets`: what must be under way at once where states are saved.
+    anew at each step with a polynomial of its own; or as values that jump. `meets`: what must be under way at once
+    where states are saved.
     """
 
     values: Values
@@ -75,6 +77,8 @@ MEETINGS = {
     "a cubic that goes on": Meeting({"s": 0.02}, CUBIC, "cut"),
     "a cubic that is left alone": Meeting({"s": 0.02}, CUBIC),
     "a cubic of its own at each step": Meeting({"s": 0.02}, CUBIC, "anew"),
+    "loads that jump": Meeting({"s": 0.01, "method": 4}, CUBIC, "jump"),
+    "a slip, loads that jump": Meeting({**ROAD, **THROWN, "s": 0.01}, CUBIC, "jump", meets=slides),
     "a cubic, multibody, Adams": Meeting({**GENERAL, "s": 0.02, "formulation": 3, "method": 2}, CUBIC, "cut"),
     "a cubic, BDF, regularized": Meeting({"s": 0.02, "friction_law": 2, "omega_s": 0.01, "method": 3}, CUBIC, "cut"),
     "a slip, a cubic": Meeting({**ROAD, **THROWN, "s": 0.01}, CUBIC, "cut", meets=slides),
@@ -121,6 +125,8 @@ def step(w: FMU2Wheel, meeting: Meeting, t: float) -> list[object]:
     w.take_messages()
     if meeting.how == "cut" or (meeting.how == "anew" and w.time > 0):
         w.give(meeting.inputs, w.time if meeting.how == "cut" else 0.0)
+    if meeting.how == "jump":
+        w.put(**{name: c[0] * cos(9 * w.time) for name, c in meeting.inputs.items()})
     return [w.step_to(t), w.bits(), w.rates(RATES)(), w.get(*meeting.inputs), w.texts()]
 
 
