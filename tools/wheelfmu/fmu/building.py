@@ -53,17 +53,17 @@ def build(
 
 def succeeds(name: str, words: list[str], place: Path, log: TextIO) -> bool:
     """Runs CMake, with a progress bar on a terminal."""
-    from tqdm import tqdm
+    from .progress import bar
 
     how: dict[str, Any] = {"cwd": place, "stdout": PIPE, "stderr": STDOUT, "text": True, "errors": "replace"}
     with (
         subprocess.Popen(words, **how) as cmake,
-        tqdm(total=100, desc=f"Building {name}", bar_format=BAR, leave=False, disable=None) as bar,
+        bar(total=100, desc=f"Building {name}", bar_format=BAR, leave=False) as done,
     ):
         for line in cmake.stdout or ():
             log.write(line)
             if found := re.match(r"\[ *(\d+)%\] Building", line):
-                bar.update(int(found[1]) - bar.n)
+                done.update(int(found[1]) - done.n)
     return not cmake.returncode
 
 

@@ -14,10 +14,9 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from tqdm import tqdm
-
 from wheelfmu.diagrams import style
 from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.fmu.progress import bar
 from wheelfmu.publishing.markdown import pages, with_figures
 from wheelfmu.truth.motion import Library
 
@@ -43,14 +42,14 @@ def parts_of(module: ModuleType) -> list[Part]:
 def measure(names: list[str], folder: Path, options: Namespace) -> None:
     library = Library.unpacked(build_folder() / "wheel.fmu")
     parts = {name: parts_of(module(name)) for name in names}
-    with tqdm(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR, disable=None) as bar:
+    with bar(total=sum(part.seconds for of in parts.values() for part in of), bar_format=BAR) as done:
         for name in names:
             report = Report(name, library, folder, options.quick)
             for part in parts[name]:
-                bar.set_description_str(f"{name}: {part.words}")
+                done.set_description_str(f"{name}: {part.words}")
                 report.measure(part)
                 report.write()
-                bar.update(part.seconds)
+                done.update(part.seconds)
     library.remove()
 
 

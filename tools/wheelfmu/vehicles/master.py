@@ -24,7 +24,8 @@ from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate, fmi2LastSuccessfulTime
 from fmpy.simulation import apply_start_values
-from tqdm import tqdm
+
+from wheelfmu.fmu.progress import bar
 
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
@@ -160,7 +161,7 @@ class Master:
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         try:
-            for i in tqdm(range(count + 1), disable=None if progress else True, leave=False):
+            for i in bar(range(count + 1), shown=progress, leave=False):
                 t, to = (k * h if k < count else stop for k in (i, i + 1))
                 self._exchange(t, rates=exchange != "held")
                 if i % every == 0 or i == count:

@@ -1,0 +1,12 @@
+"""The progress bar of what takes a while: on stderr, for terminals; the variable TQDM_DISABLE=1 hides it there too."""
+
+import sys
+from collections.abc import Iterable
+from typing import Any
+
+from tqdm import tqdm
+
+
+def bar(steps: Iterable[Any] | None = None, shown: bool = True, **look: Any) -> tqdm:
+    hidden = {} if shown and sys.stderr.isatty() else {"disable": True}  # on a terminal the variable decides
+    return tqdm(steps, **look, **hidden)
