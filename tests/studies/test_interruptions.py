@@ -20,9 +20,8 @@ from wheelfmu.studies import Status, Study
 from wheelfmu.studies.__main__ import main
 from wheelfmu.studies.dataset import open_results
 from wheelfmu.studies.options import arguments_of
-from wheelfmu.studies.worker import Result, run_chunk
 
-from .studies_support import same
+from .studies_support import die_at_upright, same
 
 # A chunk of wheels that fall at once, and three of wheels that roll on for 10 s, with a long history.
 SPINS = [0.0] * 24 + [-2 - k / 60 for k in range(72)]
@@ -76,13 +75,6 @@ def test_a_study_continues_after(space, stop, code, words, tmp_path, fmu_path, c
     assert main(options) == 0 and f"{len(SPINS)} of {len(SPINS)} wheels are there already" in capsys.readouterr().err
     assert kept.items() <= chunks(tmp_path).items()
     assert same(whole, open_results(tmp_path / "z"))
-
-
-def die_at_upright(*task: object) -> Result | None:
-    """As a worker does it, but the process dies where a wheel starts at exactly 1.5 rad."""
-    if (task[-1]["theta_start"] == 1.5).any():
-        os._exit(1)
-    return run_chunk(*task)
 
 
 def test_a_worker_that_dies_costs_one_wheel(conduct, crew: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,11 +6,10 @@ import shlex
 import subprocess
 import sys
 from contextlib import nullcontext
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -21,24 +20,14 @@ from wheelfmu.fmu import values
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.studies import Status, Study, StudyError, drawing, options, pictures
 from wheelfmu.studies.__main__ import main, study_file
-from wheelfmu.studies.dataset import curves, in_degrees, study_of
+from wheelfmu.studies.dataset import in_degrees, study_of
 from wheelfmu.studies.options import arguments_of, file_of
-from wheelfmu.studies.worker import Result, run_chunk
+from wheelfmu.studies.worker import run_chunk
 
-from .studies_support import FATES, same
+from .studies_support import FATES, run_and_write, same, without_the_store
 
 GUIDE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLE = re.findall(r"^```python\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)[0]
-
-
-def run_and_write(*task: object) -> None:
-    """As a worker does it, but an error if it has not written the chunk itself."""
-    assert run_chunk(*task) is None
-
-
-def without_the_store(upload: str, study: Study, _place: str, *task: object) -> Result | None:
-    """As a worker does it that does not see the caller's store."""
-    return run_chunk(upload, study, "/nowhere", *task)
 
 
 def test_the_guides_study_is_that_of_its_command_line(tmp_path: Path) -> None:
@@ -47,7 +36,7 @@ def test_the_guides_study_is_that_of_its_command_line(tmp_path: Path) -> None:
     study = study_file(file)["study"]
     words = shlex.split(re.search(r"scripts/study (--vary.*?)```", GUIDE, re.DOTALL)[1].replace("\\\n", " "))
     other = ["s=0.02" if word == "s=0.01" else word for word in words]
-    assert asdict(arguments_of(words).study) == asdict(study) != asdict(arguments_of(other).study)
+    assert arguments_of(words).study == study != arguments_of(other).study
 
 
 def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> None:
@@ -63,9 +52,6 @@ def test_results_have_short_labels_and_carry_all_that_repeats_them(conduct) -> N
     assert (results["lowest"].attrs["units"], turned["lowest"].attrs["units"]) == ("rad", "deg")
     within(relative_error(turned["theta_start"].values, [15, 75, 200]), 16 * EPSILON, "theta_start in deg, relative")
     np.testing.assert_array_equal(turned["energy"], results["energy"])
-    (axes,) = {line.axes for line in curves(turned["theta"].isel(theta_start=1, phi_dot_start=0), x="time", hue="s")}
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["0", "0.03"]
-    plt.close("all")
 
 
 def test_another_study_is_overwritten_on_request_and_nothing_else(conduct, tmp_path: Path) -> None:
@@ -215,7 +201,7 @@ def test_a_ready_wheel_and_body_give_what_the_command_line_does_not() -> None:
         ("--vary s=zero", 's = "zero" is not a number.'),
         ("--vary s=0:1:one", "--vary s=0:1:one: write --vary NAME=1,2,3 or NAME=first:last:count."),
         ("--vary s=0,1 --wheel koin", 'There is no wheel "koin"; there are car_tyre'),
-        ("--body ball --vary s=0,1", "There is no body 'ball'; there are torus, disc, hoop."),
+        ("--body ball --vary s=0,1", 'There is no body "ball"; there are torus, disc, hoop.'),
         ("--body disc --vary J_z=1,2", "'J_z' follows from m, r_0 and r with body disc: leave one of the two out."),
         ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU. Do you mean theta_start"),
         ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
@@ -341,7 +327,7 @@ def test_earlier_results_go_on_by_the_name_of_their_folder(
     for k, study in enumerate(studies):
         place = tmp_path / "results" / "studies" / f"earlier_{k}.zarr"
         results = conduct(study, place)
-        assert asdict(study_of(results)) == asdict(study)
+        assert study_of(results) == study
     monkeypatch.setattr(options, "ROOT", tmp_path)
     for name in ("earlier_2", str(place)):
         assert main([name, "--fmu", str(fmu_path), "--scheduler", crew.scheduler_address]) == 0

@@ -4,17 +4,9 @@
 from argparse import Namespace
 
 from wheelfmu.commands.build import fmu
-from wheelfmu.fmu.values import Fault
-from wheelfmu.studies import StudyError, options
+from wheelfmu.studies.options import arguments_of as reads  # noqa: F401 - by __main__
 
 PART, STAYS, FINISHES, NEEDS = "examples/studies", True, True, ("study",)
-
-
-def reads(words: list[str]) -> Namespace:
-    try:
-        return options.arguments_of(words)
-    except StudyError as fault:
-        raise Fault(fault) from None
 
 
 def main(given: Namespace) -> int:

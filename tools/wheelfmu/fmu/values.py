@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple, NoReturn
 from xml.etree import ElementTree
 
@@ -277,6 +278,7 @@ def spin(v: float, r_0: float, r: float, theta: float = math.pi / 2, psi_dot: fl
     return 0.0 - (v + psi_dot * r_0 * math.cos(theta)) / (r_0 + r * math.sin(theta))
 
 
+@cache
 def bodies() -> dict[str, dict[str, Any]]:
     """The bodies: name -> title, source, and J_x = J_y and J_z over m, as parts of the squares of lengths."""
     return json.loads(BODIES.read_text(encoding="utf-8"))

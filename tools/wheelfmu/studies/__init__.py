@@ -5,16 +5,18 @@
     results = study.run("results/lowest.zarr")
 
 docs/studies.md is the guide. `plan` and the command's arguments need Python alone, a worker Dask, fmpy and numpy (and
-zarr, to write its results itself), the caller also xarray.
+xarray with zarr, to write its results itself).
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from wheelfmu.fmu.values import Fault as StudyError
 
 from . import plan
-from .plan import Status, StudyError
+from .plan import Status
 
 if TYPE_CHECKING:
     import xarray
@@ -25,11 +27,11 @@ __all__ = ["Status", "Study", "StudyError"]
 class Study(plan.Study):
     """A study that a program runs."""
 
-    def run(self, out: str | Path, **how: object) -> xarray.Dataset:
+    def run(self, out: str | Path, **how: Any) -> xarray.Dataset:
         """Runs the wheels that are missing in `out` (a Zarr folder or its URL) and returns the results.
 
         overwrite=True discards results of another study that are there; compute.run lists all options.
         """
-        from .compute import run  # not needed by a worker, and slow to load
+        from .compute import run  # not for a worker, and slow to load
 
         return run(self, out, **how)

@@ -24,16 +24,17 @@ from dask.array.core import normalize_chunks, slices_from_chunks
 from distributed import Client, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
-from fmpy import read_model_description
-from fmpy.model_description import ModelDescription
-from tqdm import tqdm
 
+from wheelfmu.fmu import values
 from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.progress import bar
+from wheelfmu.fmu.values import Fault
 
-from .dataset import TITLE, axes_of, doubtful, open_results, points, provenance, template
-from .plan import Status, Study, StudyError
+from .dataset import TITLE, axes_of, open_results, points, provenance, template
+from .plan import Status, Study, description
 from .worker import MARK, Region, Result, pack, run_chunk, write
 
+Workers = int | str | Cluster | None
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
 BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
@@ -49,7 +50,7 @@ def run(
     out: str | Path,
     *,
     fmu: str | Path = "wheel.fmu",
-    workers: int | str | Cluster | None = None,
+    workers: Workers = None,
     chunk: int | None = None,
     overwrite: bool = False,
 ) -> xr.Dataset:
@@ -62,83 +63,77 @@ def run(
 
     The progress bar is for terminals; the environment variable TQDM_DISABLE=1 hides it there.
     """
-    if not Path(fmu).is_file():
-        raise StudyError(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
-    description = read_model_description(str(fmu), validate=False)
-    study.check({v.name: v for v in description.modelVariables})
-    place = str(out) if "://" in str(out) else str(Path(out).resolve())
-    with nullcontext() if "://" in place else alone(Path(place)):
-        return fill(study, place, Path(fmu), description, workers, chunk, overwrite)
+    fmu, place = Path(fmu), str(out) if "://" in str(out) else str(Path(out).resolve())
+    if not fmu.is_file():
+        raise Fault(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
+    study.check(values.variables(description(fmu)))
+    with nullcontext() if "://" in place else alone(Path(place)):  # one caller at a time
+        return fill(study, place, fmu, workers, chunk, overwrite)
 
 
-def fill(
-    study: Study,
-    place: str,
-    fmu: Path,
-    description: ModelDescription,
-    workers: int | str | Cluster | None,
-    chunk: int | None,
-    overwrite: bool,
-) -> xr.Dataset:
-    """The results with all their wheels, by one caller at a time."""
+def fill(study: Study, place: str, fmu: Path, workers: Workers, chunk: int | None, overwrite: bool) -> xr.Dataset:
+    """The results with all their wheels."""
     sha256 = hashlib.sha256(fmu.read_bytes()).hexdigest()
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
-    mark, group = uuid.uuid4().hex, kept(place, fingerprint, overwrite)
+    group, axes, variables = kept(place, fingerprint, overwrite), axes_of(study), values.variables(description(fmu))
     if there := int((group["status"][:] != Status.not_computed).sum()) if group else 0:
         print(f"{there} of {group['status'].size} wheels are there already.", file=sys.stderr)
         if there == group["status"].size:
             return open_results(place)
-    axes = axes_of(study)
-    if doubt := doubtful(study, axes, description):
+    if doubt := study.doubt(variables):
         print(f"study: warning: {doubt}", file=sys.stderr)
     crew = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
     with crew as running, Client(running, timeout=ANSWER) as client:
+        mark = uuid.uuid4().hex
         with tempfile.TemporaryDirectory() as folder:
             # A new name per run: workers still read modules from the file of an earlier run, which must not change.
             upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
             client.upload_file(str(upload))
         client.wait_for_workers(1, timeout=PATIENCE)
         if group is None:
-            empty = template(study, axes, description, chunk or chunk_size(study, axes, len(client.nthreads())))
-            empty.attrs = provenance(study, description, sha256)
+            empty = template(study, axes, variables, chunk or chunk_size(study, axes, len(client.nthreads())))
+            empty.attrs = provenance(study, fmu) | {"fmu_sha256": sha256}
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
         group.attrs[MARK] = mark
-        common = replace(study, grid={}, list={}, measures=study.restated({}))
+        common = replace(study, grid={}, list={})
+        common.parsed  # noqa: B018 - here, for a worker has no description of the variables
         task = partial(run_chunk, upload.name, common, place, mark)
-        quiet = {} if sys.stderr.isatty() else {"disable": True}  # else by TQDM_DISABLE
-        with tqdm(total=group["status"].size, initial=there, unit=" wheels", mininterval=0.2, **quiet) as bar:
-            for region, result in finished(client, task, partial(points, axes), missing(group)):
+        with bar(total=group["status"].size, initial=there, unit=" wheels", mininterval=0.2) as done:
+            for region, result in finished(
+                client, task, partial(points, axes), missing(group, [*map(str, axes.sizes)])
+            ):
                 if result is not None:
                     write(place, mark, region, result)
-                bar.update(math.prod(part.stop - part.start for part in region))
+                done.update(math.prod(part.stop - part.start for part in region.values()))
     return open_results(place)
 
 
 def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:
-    """The results of this study that are there; None if there are none or they are to be overwritten; or StudyError."""
+    """The results of this study that are there; None if there are none or they are to be overwritten; or Fault."""
     try:
         group = zarr.open_group(place, mode="r+")
     except (FileNotFoundError, ValueError):  # zarr's own error for a missing group is both
         if "://" in place or not Path(place).exists():
             return None
-        raise StudyError(f"{place} exists and is not a Zarr group; choose another place (--out).") from None
+        raise Fault(f"{place} exists and is not a Zarr group; choose another place (--out).") from None
     if overwrite or (group.attrs.get("title") == TITLE and "fingerprint" not in group.attrs):
         return None  # without its fingerprint: killed while it was made
     if group.attrs.get("fingerprint") != fingerprint:
-        raise StudyError(
+        raise Fault(
             f"{place} holds the results of another study or of another wheel.fmu; choose another place (--out), "
             "or discard them (--overwrite, in Python overwrite=True)."
         )
     return group
 
 
-def missing(group: zarr.Group) -> list[Region]:
+def missing(group: zarr.Group, dims: list[str]) -> list[Region]:
     """The chunks that have not been run, in order."""
     status, codes = group["status"], group["status"][:]
     chunks = slices_from_chunks(normalize_chunks(status.chunks, status.shape))
-    return [region for region in chunks if (codes[region] == Status.not_computed).any()]
+    left = (parts for parts in chunks if (codes[parts] == Status.not_computed).any())
+    return [dict(zip(dims, parts, strict=True)) for parts in left]
 
 
 def finished(
@@ -160,14 +155,20 @@ def finished(
             elif len(pieces := divided(region)) > 1 or len(batch) > 1:
                 batches += [[piece] for piece in pieces]
             else:
-                yield region, {"status": Status.failed, "message": "The worker process died during this run."}
+                yield region, died(region)
+
+
+def died(region: Region) -> Result:
+    """The results of one wheel whose run has killed its worker."""
+    shape, text = [1] * len(region), "The worker process died during this run."
+    return {"status": np.full(shape, Status.failed, "i1"), "message": np.full(shape, text, "T")}
 
 
 def divided(region: Region) -> list[Region]:
     """The region in pieces along its longest side; one wheel is one piece."""
-    k = int(np.argmax([part.stop - part.start for part in region]))
-    parts = [part.tolist() for part in np.array_split(range(region[k].start, region[k].stop), PIECES) if part.size]
-    return [(*region[:k], slice(part[0], part[-1] + 1), *region[k + 1 :]) for part in parts]
+    name = max(region, key=lambda name: region[name].stop - region[name].start)
+    parts = np.array_split(range(region[name].start, region[name].stop), PIECES)
+    return [{**region, name: slice(int(part[0]), int(part[-1]) + 1)} for part in parts if part.size]
 
 
 def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:

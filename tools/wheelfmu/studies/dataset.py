@@ -1,32 +1,31 @@
 """The labelled dataset of a study: empty before any wheel has run, opened, drawn, exported, summarized."""
 
 import json
-import math
 import platform
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from xml.etree import ElementTree
 
 import dask.array as da
 import numpy as np
 import xarray as xr
 import zarr
-from fmpy.model_description import ModelDescription
 
 from wheelfmu.fmu import outputs
+from wheelfmu.fmu.values import Variable, moments
 
-from .plan import OWN, PLANE_ANGLE, POINT, SLIP, Status, Study, counters_of
+from .plan import OWN, PLANE, POINT, QUANTITIES, SIZE, SLIP, Status, Study, counters_of, description
 from .worker import Array, Region
 
 TITLE = "A study with wheel.fmu"
 ANGLE = "angle to the ground"
-SIZE = ("m", "r_0", "r")
 GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
 SYMBOLS = {  # in labels, by the text of a measure
-    rf"\s*(lowest|min\({PLANE_ANGLE}\))\s*": f"smallest {ANGLE}",
-    rf"\b{PLANE_ANGLE}\b": ANGLE,
+    rf"\s*(lowest|min\({PLANE}\))\s*": f"smallest {ANGLE}",
+    rf"\b{PLANE}\b": ANGLE,
     rf"^\s*({SLIP}|max\({SLIP}\))\s*$": "largest slip",
     r"^\s*slid\s*$": "time of sliding",
     r"\b(\w+)_start\b": r"initial \1",
@@ -34,9 +33,6 @@ SYMBOLS = {  # in labels, by the text of a measure
     r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
     r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
 }
-PLANE = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
-
-SPEED = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it rolls"
 
 
 def axes_of(study: Study) -> xr.Dataset:
@@ -44,24 +40,8 @@ def axes_of(study: Study) -> xr.Dataset:
     axes = xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
     if not study.body:
         return axes
-    from wheelfmu.fmu.values import moments
-
-    size = {name: study.values[name] for name in SIZE if name in study.values}
-    size |= {name: axes[name] for name in SIZE if name in axes.coords}
+    size = {name: x for name, x in {**study.values, **axes.coords}.items() if name in SIZE}
     return axes.assign_coords(moments(study.body, **size))
-
-
-def doubtful(study: Study, axes: xr.Dataset, description: ModelDescription) -> str:
-    """One sentence if there are wheels that no body can be, with their number; else nothing."""
-    from wheelfmu.fmu.values import MOMENTS, doubt
-
-    names = (*SIZE, *MOMENTS)
-    fixed = {v.name: float(v.start) for v in description.modelVariables if v.name in names} | study.values
-    columns = [axes.coords[name] if name in axes.coords else xr.DataArray(fixed[name]) for name in names]
-    rows = zip(*(column.values.ravel().tolist() for column in xr.broadcast(*columns)), strict=True)
-    said = [doubt(dict(zip(names, row, strict=True))) for row in rows]
-    wheels, found = math.prod(axes.sizes.values()), [text for text in said if text]
-    return f"{len(found) * wheels // len(said)} of {wheels} wheels cannot exist. The first: {found[0]}" if found else ""
 
 
 def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Array]:
@@ -74,15 +54,12 @@ def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0)
 
 def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
     """The values of a region of the results, by name: arrays to be broadcast against each other."""
-    part = axes.isel(dict(zip(axes.sizes, region, strict=True)))
-    return {name: values.variable.set_dims([*axes.sizes]).values for name, values in part.coords.items()}
+    return {name: x.variable.set_dims([*axes.sizes]).values for name, x in axes.isel(region).coords.items()}
 
 
-def template(study: Study, axes: xr.Dataset, description: ModelDescription, size: int) -> xr.Dataset:
+def template(study: Study, axes: xr.Dataset, variables: Mapping[str, Variable], size: int) -> xr.Dataset:
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
-    variables = {v.name: v for v in description.modelVariables}
-    about = {name: (v.unit, label(name), v.description) for name, v in variables.items()}
-    about |= {PLANE_ANGLE: ("rad", ANGLE, PLANE), SLIP: ("m/s", SLIP, SPEED)}
+    about = {name: (v.unit, label(name), v.description) for name, v in {**variables, **QUANTITIES}.items()}
     chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
     for name, measure in study.parsed.items():
@@ -103,9 +80,9 @@ def template(study: Study, axes: xr.Dataset, description: ModelDescription, size
     return xr.Dataset(results, coordinates)
 
 
-def attributes(unit: str | None, name: str, description: str | None) -> dict[str, str]:
+def attributes(unit: str, name: str, meaning: str) -> dict[str, str]:
     """Those that are not empty."""
-    return {k: v for k, v in (("units", unit), ("long_name", name), ("description", description)) if v}
+    return {k: v for k, v in (("units", unit), ("long_name", name), ("description", meaning)) if v}
 
 
 def label(text: str) -> str:
@@ -115,13 +92,14 @@ def label(text: str) -> str:
     return re.sub(r"\d+\.\d{5,}(?!\d*e)", lambda found: f"{float(found[0]):.4g}", text)
 
 
-def provenance(study: Study, description: ModelDescription, fmu_sha256: str) -> dict[str, object]:
+def provenance(study: Study, fmu: Path) -> dict[str, object]:
     """With the axes all that is needed to repeat the study: its definition, the FMU's hash, and versions."""
     definition = {name: value for name, value in asdict(study).items() if name not in ("grid", "list")}
+    about = ElementTree.fromstring(description(fmu))
     versions = {f"{name}_version": version(name) for name in ("fmpy", "numpy", "dask", "xarray", "zarr")}
     versions |= {"python_version": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
-    fmu = {"fmu_sha256": fmu_sha256, "fmu_guid": description.guid, "fmu_version": description.version or ""}
-    return {"title": TITLE, "study": json.dumps(definition), "varied": [*study.varied]} | fmu | versions
+    versions |= {"fmu_guid": about.get("guid", ""), "fmu_version": about.get("version", "")}
+    return {"title": TITLE, "study": json.dumps(definition), "varied": [*study.varied]} | versions
 
 
 def open_results(place: Path | str) -> xr.Dataset:
@@ -133,8 +111,8 @@ def open_results(place: Path | str) -> xr.Dataset:
 def study_of(results: xr.Dataset) -> Study:
     """The study whose results these are."""
     columns = {name: results[name].values.tolist() for name in results.attrs["varied"]}
-    kind = "list" if POINT in results.sizes else "grid"
-    return Study(**json.loads(results.attrs["study"]), **{kind: columns})
+    varied = {"list" if POINT in results.sizes else "grid": columns}
+    return Study(**json.loads(results.attrs["study"]) | varied)
 
 
 def in_degrees(results: xr.Dataset) -> xr.Dataset:
@@ -144,16 +122,6 @@ def in_degrees(results: xr.Dataset) -> xr.Dataset:
         if values.attrs.get("units") == "rad":
             turned[name] = np.degrees(results[name]).assign_attrs(values.attrs | {"units": "deg"})
     return turned
-
-
-def curves(values: xr.DataArray, x: str, hue: str) -> list:
-    """Draws a line for each value of hue, values over x, with the legend beside the axes, where no line runs."""
-    lines = values.plot.line(x=x, hue=hue)
-    legend = lines[0].axes.get_legend()
-    legend.set(loc="center left", bbox_to_anchor=(1.0, 0.5), frame_on=False)
-    for text in legend.texts:
-        text.set_text(f"{float(text.get_text()):g}")
-    return lines
 
 
 def exported(place: str, more: Collection[str] = ()) -> set[str]:

@@ -1,9 +1,7 @@
 """Shared by the examples' figures: two maps side by side, initial theta over initial spin."""
 
-import json
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 
 import numpy as np
 import xarray as xr
@@ -11,10 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
 
 from wheelfmu.diagrams import style
-from wheelfmu.fmu.values import moments, scale
-from wheelfmu.studies import Status
+from wheelfmu.fmu.values import scale
 from wheelfmu.truth import closed_forms
 from wheelfmu.truth.reference import Wheel
+
+from .dataset import study_of
+from .plan import Status, quantities
 
 PAPER = (2.0, 75.0)  # |phi_dot| in rad/s and theta in degrees of the paper's scenes
 HEIGHT = 92.0  # mm, of a figure
@@ -30,16 +30,10 @@ LEAST = 0.004  # of a map: a smaller region has no label
 NARROW = 0.05  # of the frame: from here to a region's nearest edge its label is upright
 
 
-def studied(table: xr.Dataset) -> dict[str, Any]:
-    """The definition of the study whose results these are."""
-    return json.loads(table.attrs["study"])
-
-
 def wheel_of(table: xr.Dataset) -> dict[str, float]:
-    """The study's wheel; of a body with the moments that follow from its mass and size."""
-    study = studied(table)
-    wheel = {name: study["values"].get(name, value) for name, value in asdict(Wheel()).items()}
-    return wheel | (moments(study["body"], *(wheel[name] for name in ("m", "r_0", "r"))) if study["body"] else {})
+    """The wheel of the study whose results these are; of a body with the moments that follow from its mass and size."""
+    own = next(study_of(table).starts(quantities()))
+    return {field.name: own[field.name] for field in fields(Wheel)}
 
 
 def critical_spin(wheel: Mapping[str, float]) -> float:
@@ -55,7 +49,7 @@ def label_regions(ax: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, te
         apart = np.hypot(*(found[:, None] - rest[None, :: max(1, len(rest) // 2000)]).transpose(2, 0, 1)).min(axis=1)
         apart = np.minimum(apart, np.minimum(found, 1 - found).min(axis=1))
         place = found[int(np.argmax(apart))]
-        look = {"color": "white", "ha": "center", "va": "center", "fontsize": 8, "linespacing": 0.9}
+        look: style.Look = {"color": "white", "ha": "center", "va": "center", "fontsize": 8, "linespacing": 0.9}
         narrow = apart.max() < NARROW
         if narrow:  # its wheels stand at the frame, and it ends half-way to the next ones
             text, place = text, np.array([place[0] + (rest[:, 0].min() - place[0]) / 4, 0.5])
@@ -68,7 +62,7 @@ def two_maps(
     small: xr.Dataset,
     name: str,
     tones: str,
-    levels: list[float],
+    levels: Sequence[float],
     text: str,
     dress: Callable[[Axes], None],
     side: int = 1,
@@ -87,9 +81,9 @@ def two_maps(
     fig = style.figure_mm(style.PAGE, HEIGHT)
     axes = [style.axes_mm(fig, 14.0 + 75.0 * k, 14.0, 70.0, HEIGHT - 24.0) for k in range(2)]
     colours = style.mpl.colormaps[tones].resampled(len(levels))
-    look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max"), "extend": "max"}
+    look: style.Look = {"cmap": colours, "norm": BoundaryNorm(levels, len(levels), extend="max"), "extend": "max"}
     faster = scale(wheel_of(small), s=-1)
-    start, beside = (PAPER[0] * faster, PAPER[1]), {"xytext": (6 * side, 3), "ha": "left" if side > 0 else "right"}
+    start = PAPER[0] * faster, PAPER[1]
     for ax, s in zip(axes, small["s"].values, strict=True):
         one = small.sel(s=s).transpose("theta_start", "phi_dot_start")
         ax.set(ylim=(0, 90), yticks=range(0, 91, 15), xlabel=r"initial spin $|\dot\varphi|$ [rad/s]")
@@ -108,11 +102,11 @@ def two_maps(
         ax.set_title("no rolling friction" if s == 0 else f"rolling friction, $s$ = {s:.3g} m", fontsize=9)
         ax.plot(*start, marker="o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK)
         paper = "paper" if faster == 1 else "paper, scaled"
-        ax.annotate(paper, start, textcoords="offset points", color="white", fontsize=8, **beside)
+        style.note(ax, paper, start, (6 * side, 3), color="white", fontsize=8, ha="left" if side > 0 else "right")
     axes[0].set_ylabel(r"initial angle $\theta$ [deg]")
     axes[1].set_yticklabels([])
     bar = fig.colorbar(shades, cax=style.axes_mm(fig, 163.0, 14.0, 4.0, HEIGHT - 24.0), spacing="uniform")
-    bar.set_label(text.format(studied(small)["stop_time"]))
+    bar.set_label(text.format(study_of(small).stop_time))
     bar.ax.tick_params(size=0)
     return fig, axes
 

@@ -7,8 +7,10 @@ the FMU's modelDescription.xml. Values are in SI units, or have a unit behind th
 import argparse
 import re
 from pathlib import Path
+from typing import Any
 
 from wheelfmu.fmu.csv_file import read_table
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import (
     MOMENTS,
     Fault,
@@ -24,7 +26,7 @@ from wheelfmu.fmu.values import (
     variables,
     wheels,
 )
-from wheelfmu.studies.plan import ROOT, SETTABLE, Study, StudyError, check_names, description
+from wheelfmu.studies.plan import SETTABLE, Study, check_names, description
 
 EXAMPLES = ROOT / "examples" / "studies"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
@@ -50,7 +52,7 @@ def numbers(variable: Variable, text: str) -> list[float]:
         return [variable.number_of(part) for part in parts]
     first, last, count = [*text.split(":"), "", ""][:3]
     if not re.fullmatch(r"[0-9]{1,9}", count) or int(count) < 2 or text.count(":") > 2:
-        raise StudyError(f"--vary {name}={text}: write --vary NAME=1,2,3 or NAME=first:last:count.")
+        raise Fault(f"--vary {name}={text}: write --vary NAME=1,2,3 or NAME=first:last:count.")
     (begin, given), (end, other) = parted(name, first), parted(name, last)
     if given != other:
         begin, end, given = number(name, first, unit), number(name, last, unit), ""
@@ -69,24 +71,23 @@ def pairs(option: str, texts: list[str]) -> dict[str, str]:
 
 def study_of(arguments: argparse.Namespace) -> Study:
     """The study that the options describe, checked."""
-    known = variables(description(arguments.fmu))
-
-    def typed(name: str) -> Variable:
-        check_names([name], SETTABLE, known)
-        return known[name]
-
-    grid = {name: numbers(typed(name), text) for name, text in pairs("--vary", arguments.vary).items()}
-    table = read_table(arguments.list) if arguments.list else None
-    rows = {name: table.read(name, typed(name).number_of) for name in table.columns} if table else {}
-    if bool(grid) == bool(rows):
-        raise StudyError("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
+    known, table = variables(description(arguments.fmu)), read_table(arguments.list) if arguments.list else None
+    axes, given = pairs("--vary", arguments.vary), pairs("--set", arguments.set)
+    varied = [*axes, *(table.columns if table else ())]
+    check_names([*varied, *given], SETTABLE, known)
+    if bool(axes) == bool(table):
+        raise Fault("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
     derived = MOMENTS if arguments.body else ()
-    values = {name: x for name, x in arguments.preset.items() if name not in {*grid, *rows, *derived}}
-    values |= {name: typed(name).number_of(text) for name, text in pairs("--set", arguments.set).items()}
     names = ("history", "stop_time", "interval", "tolerance", "branch_at", "body")
     fields = {name: getattr(arguments, name) for name in names}
     fields |= {"measures": pairs("--measure", arguments.measure)} if arguments.measure else {}
-    study = Study(grid=grid, list=rows, values=values, **fields)
+    study = Study(
+        grid={name: numbers(known[name], text) for name, text in axes.items()},
+        list={name: table.read(name, known[name].number_of) for name in table.columns} if table else {},
+        values={name: x for name, x in arguments.preset.items() if name not in {*varied, *derived}}
+        | {name: known[name].number_of(text) for name, text in given.items()},
+        **fields,
+    )
     study.check(known)
     return study
 
@@ -113,19 +114,20 @@ def file_of(name: str) -> Path:
         return kept
     if not path.exists():
         meant = suggestion(name, dict.fromkeys(NAMES, ""))
-        raise StudyError(f"There is no study {name}; the examples are {', '.join(NAMES)}.{meant}")
+        raise Fault(f"There is no study {name}; the examples are {', '.join(NAMES)}.{meant}")
     return path
 
 
 def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
-    """The arguments, `study` as the path of a file or as the Study that the others describe; Fault, StudyError."""
+    """The arguments, `study` as the path of a file or as the Study that the others describe; Fault."""
     parser = Parser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
         epilog=SHOWN.format(names=", ".join(NAMES), wheels=", ".join(wheels())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add, several = parser.add_argument, {"action": "append", "default": []}
+    several: dict[str, Any] = {"action": "append", "default": []}
+    add = parser.add_argument
     add("study", nargs="?", help="an example's name, a Python file, or earlier results to go on with")
     add("--wheel", metavar="NAME", help="a preset, to which lengths, times and rates of a study's file are scaled")
     add("--body", metavar="NAME", help=f"{', '.join(bodies())}: J_x, J_y, J_z follow from m, r_0, r of each wheel")

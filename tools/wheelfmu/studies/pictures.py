@@ -3,9 +3,9 @@
 A panel for each measure; angles in degrees. Runs that ended early have the colours of `drawing.FATES`.
 """
 
-import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from textwrap import wrap
 
 import numpy as np
 import xarray as xr
@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 
 from wheelfmu.diagrams import style
 
-from .dataset import in_degrees
+from .dataset import in_degrees, study_of
 from .drawing import FATES
 from .plan import POINT
 
@@ -27,35 +27,25 @@ WIDTH, HEIGHT = 86.0, 62.0  # mm of a panel
 
 def draw(results: xr.Dataset, stem: Path) -> Path | None:
     """Writes stem.png; None where nothing varies or is measured."""
-    table, measures = in_degrees(results.load()), [*json.loads(results.attrs["study"])["measures"]][:MOST]
+    table = in_degrees(results.load())
     names = [name for name in results.attrs["varied"] if table[name].size > 1][:MOST]
-    measures = [name for name in measures if np.isfinite(table[name]).any()]
+    measures = [name for name in [*study_of(results).measures][:MOST] if np.isfinite(table[name]).any()]
     if not names or not measures:
         return None
+    for values in table.variables.values():
+        if values.attrs.get("units") == "1":
+            del values.attrs["units"]
     style.use_style()
-    listed = POINT in table.sizes
-    single = {name: 0 for name in table[measures[0]].dims if table.sizes[name] == 1}
-    table, small = table.isel(single), min((table[name].size for name in names), default=0) <= HUES
-    if len(names) == 1 and not listed:
-        return one_row(table, measures, lambda ax, name: curves(ax, table, name, names[0]), stem)
-    if len(names) == 2 and not listed:
-        x, other = sorted(names, key=lambda name: -table[name].size)
-        if small:
-            return one_row(table, measures, lambda ax, name: curves(ax, table, name, x, other), stem)
-        return one_row(table, measures, lambda ax, name: mapped(ax, table, name, *names), stem)
-    fig = sheet(8 + 50 * max(len(names), 2), 12 + 45 * len(measures))
-    axes = fig.subplots(len(measures), len(names), squeeze=False, sharex="col", sharey="row")
-    for row, measure in zip(axes, measures, strict=True):
-        for ax, name in zip(row, names, strict=True):
-            marginal(ax, table, measure, name, listed)
-            ax.tick_params(labelbottom=measure == measures[-1])
-        row[0].set_ylabel("\n".join(wrap(said(table, measure), 26)))
-    for ax, name in zip(axes[-1], names, strict=True):
-        ax.set_xlabel(said(table, name))
-    return finished(fig, table, stem)
+    listed, table = POINT in table.sizes, table.squeeze(drop=True)
+    if len(names) > 2 or listed:
+        return marginals(table, measures, names, listed, stem)
+    x, other = [*sorted(names, key=lambda name: -table[name].size), None][:2]
+    if other and table[other].size > HUES:
+        return one_row(table, measures, partial(mapped, table, *names), stem)
+    return one_row(table, measures, partial(curves, table, x, other), stem)
 
 
-def one_row(table: xr.Dataset, measures: list[str], fill, stem: Path) -> Path:  # noqa: ANN001
+def one_row(table: xr.Dataset, measures: list[str], fill: Callable[[Axes, str], None], stem: Path) -> Path:
     """A panel for each measure, two in a row."""
     columns = min(2, len(measures))
     rows = -(-len(measures) // columns)
@@ -76,58 +66,60 @@ def sheet(width: float, height: float) -> Figure:
 
 def finished(fig: Figure, table: xr.Dataset, stem: Path) -> Path:
     """With a legend of the ends that occur."""
-    found = [FATES[code] for code in FATES if (table["status"] == code).any()]
-    if found:
-        handles = [Patch(color=tone, label=word) for tone, word in found]
+    if handles := [Patch(color=tone, label=word) for _, tone, word in ends(table)]:
         fig.legend(handles=handles, loc="outside lower center", ncols=len(handles), title="the run ends: the wheel")
     return style.save_png(fig, stem.with_suffix(".png"))
 
 
-def said(table: xr.Dataset, name: str) -> str:
-    """`initial θ [deg]`."""
-    about = table[name].attrs
-    unit = about.get("units", "1")
-    return about.get("long_name", name) + (f" [{unit}]" if unit != "1" else "")
+def ends(table: xr.Dataset) -> list[tuple[xr.DataArray, str, str]]:
+    """The ends that occur: whether a wheel has each, its colour and word."""
+    found = [(table["status"] == code, tone, word) for code, (tone, word) in FATES.items()]
+    return [end for end in found if end[0].any()]
 
 
-def curves(ax: Axes, table: xr.Dataset, measure: str, x: str, hue: str | None = None) -> None:
+def curves(table: xr.Dataset, x: str, hue: str | None, ax: Axes, measure: str) -> None:
     """A measure over one name, a curve for each value of another."""
-    values = [None] if hue is None else table[hue].values.tolist()
-    for tone, value in zip(TONES, values, strict=False):
-        one = table if hue is None else table.sel({hue: value})
-        label = None if hue is None else f"{value:.4g}"
-        ax.plot(one[x], one[measure], color=tone, label=label, marker="." if one[x].size < 40 else "", markersize=3)
-        for code, (dot, _) in FATES.items():
-            ends = one["status"] == code
-            ax.plot(one[x][ends], one[measure][ends], "x", color=dot, markersize=3.5, zorder=3)
-    ax.set(xlabel=said(table, x), ylabel=said(table, measure))
-    if hue is not None:
-        ax.legend(title=said(table, hue), title_fontsize=7.5)
+    ax.set_prop_cycle(color=TONES)
+    dots = {"marker": "." if table[x].size < 40 else "", "markersize": 3}
+    table[measure].plot.line(ax=ax, x=x, hue=hue, **dots)
+    for there, tone, _ in ends(table):
+        crosses = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": tone, "zorder": 3}
+        table[measure].where(there).plot.line(ax=ax, x=x, hue=hue, add_legend=False, **crosses)
 
 
-def mapped(ax: Axes, table: xr.Dataset, measure: str, x: str, y: str) -> None:
+def mapped(table: xr.Dataset, x: str, y: str, ax: Axes, measure: str) -> None:
     """A measure over two names, in steps whose boundaries run between the wheels."""
-    one = table.transpose(y, x, ...)
-    values, ended = one[measure].values, one["status"].values
-    shades = ax.contourf(one[x], one[y], values, 8, cmap="viridis")
-    for code, (tone, _) in FATES.items():
-        if (ended == code).any():
-            ax.contourf(one[x], one[y], (ended == code) * 1.0, [0.5, 1.5], colors=[tone])
-    ax.set(xlabel=said(table, x), ylabel=said(table, y))
-    ax.figure.colorbar(shades, ax=ax, label=said(table, measure))
+    table[measure].plot.contourf(ax=ax, x=x, y=y, levels=11, cmap="viridis")
+    for there, tone, _ in ends(table):
+        flat = {"levels": [0.5, 1.5], "colors": [tone], "add_colorbar": False, "add_labels": False}
+        (there * 1.0).plot.contourf(ax=ax, x=x, y=y, **flat)
 
 
-def marginal(ax: Axes, table: xr.Dataset, measure: str, name: str, listed: bool) -> None:
-    """A measure over one of many names: of a list its wheels, of a grid the median of all others and their middle four
-    fifths."""
-    values, at = table[measure], table[name]
-    if listed:
-        ax.plot(at, values, ".", color=style.BLUE, markersize=2.5)
-        for code, (tone, _) in FATES.items():
-            ends = table["status"] == code
-            ax.plot(at[ends], values[ends], ".", color=tone, markersize=3.5)
-        return
+def marginals(table: xr.Dataset, measures: list[str], names: list[str], listed: bool, stem: Path) -> Path:
+    """Each measure over each of many names: of a list its wheels, of a grid the median of all others and their middle
+    four fifths."""
+    fig = sheet(8 + 50 * max(len(names), 2), 12 + 45 * len(measures))
+    axes = fig.subplots(len(measures), len(names), squeeze=False, sharex="col", sharey="row")
+    for row, measure in zip(axes, measures, strict=True):
+        for ax, name in zip(row, names, strict=True):
+            if listed:
+                spread(ax, table, measure, name)
+            else:
+                band(ax, table[measure], name)
+            ax.label_outer()
+    return finished(fig, table, stem)
+
+
+def spread(ax: Axes, table: xr.Dataset, measure: str, name: str) -> None:
+    """A dot for each wheel."""
+    dots = {"ax": ax, "x": name, "linestyle": "", "marker": "."}
+    table[measure].plot.line(**dots, color=style.BLUE, markersize=2.5)
+    for there, tone, _ in ends(table):
+        table[measure].where(there).plot.line(**dots, color=tone, markersize=3.5)
+
+
+def band(ax: Axes, values: xr.DataArray, name: str) -> None:
     others = [other for other in values.dims if other != name]
-    low, middle, high = (values.quantile(q, others) for q in (0.1, 0.5, 0.9))
-    ax.fill_between(at, low, high, color=style.BLUE, alpha=0.2, linewidth=0)
-    ax.plot(at, middle, color=style.BLUE, marker="." if at.size < 40 else "", markersize=3)
+    low, middle, high = (values.quantile(q, others).drop_vars("quantile") for q in (0.1, 0.5, 0.9))
+    ax.fill_between(middle[name], low, high, color=style.BLUE, alpha=0.2, linewidth=0)
+    middle.plot.line(ax=ax, x=name, color=style.BLUE, marker="." if middle.size < 40 else "", markersize=3)

@@ -11,31 +11,34 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from enum import IntEnum
-from functools import cached_property
+from functools import cache, cached_property
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 from zipfile import BadZipFile, ZipFile
 
+from wheelfmu.fmu import values
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import MOMENTS, Fault, Variable, moments, preset, scale, suggestion
+
 if TYPE_CHECKING:
     import numpy
 
-    from wheelfmu.fmu.values import Variable
-
-ROOT = Path(__file__).resolve().parents[3]
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
-KINDS = ("grid", "list")  # how wheels are listed
 POINT = "wheel"  # the dimension of a list
-PLANE_ANGLE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables
-MADE_OF = {PLANE_ANGLE: ("theta",), SLIP: ("slip_x", "slip_y")}
-
-
-class StudyError(ValueError):
-    """The study cannot be run as it is written; the text is one line for the user."""
+PLANE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables, and what they are made of
+PLANE_TEXT = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
+SLIP_TEXT = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it rolls"
+QUANTITIES = {
+    PLANE: Variable(PLANE, "local", "Real", "rad", "", "", "", PLANE_TEXT),
+    SLIP: Variable(SLIP, "local", "Real", "m/s", "", "", "", SLIP_TEXT),
+}
+SIZE = ("m", "r_0", "r")  # from which a body's moments of inertia follow
+MADE_OF = {PLANE: ("theta",), SLIP: ("slip_x", "slip_y")}
 
 
 class Status(IntEnum):
@@ -73,12 +76,12 @@ class Measure(NamedTuple):
         """The FMU's variables that have to be read."""
         return MADE_OF.get(self.quantity, (self.quantity,))
 
-    def value(self, t: numpy.ndarray, x: Any, *y: numpy.ndarray) -> float:
+    def value(self, t: numpy.ndarray, x: Any, *y: Any) -> float:
         """For samples of the variables at times t, the last of which is the end of the run; x at the end for `last`.
 
         A time is that of the first passage, interpolated linearly between two samples; NaN if there is none.
         """
-        if self.quantity == PLANE_ANGLE:
+        if self.quantity == PLANE:
             x = math.pi / 2 - abs(x - math.pi / 2)
         elif self.quantity == SLIP:
             x = (x * x + y[0] * y[0]) ** 0.5
@@ -106,13 +109,13 @@ class Measure(NamedTuple):
 
 
 MEASURE = re.compile(r"(\w+)|(min|max|mean)\((\w+)\)|first\((\w+)([<>])([-+]?\.?\d.*)\)")
-SHORT = {"lowest": Measure("min", PLANE_ANGLE), "slip": Measure("max", SLIP), "slid": Measure("lasting", SLIP)}
+SHORT = {"lowest": Measure("min", PLANE), "slip": Measure("max", SLIP), "slid": Measure("lasting", SLIP)}
 
 
 def parse_measure(text: str) -> Measure:
-    """The measure that the text describes, with a limit in SI; StudyError if it describes none."""
+    """The measure that the text describes, with a limit in SI; Fault if it describes none."""
     if not (found := MEASURE.fullmatch(text.replace(" ", ""))):
-        raise StudyError(
+        raise Fault(
             f"'{text}' is not a measure: write lowest, slip, slid, a variable's name, min(name), max(name), "
             "mean(name), first(name < number) or first(name > number), as first(theta < 30deg)."
         )
@@ -122,25 +125,25 @@ def parse_measure(text: str) -> Measure:
     return Measure(kind, of) if kind else Measure(side, quantity, in_si(quantity, limit))
 
 
-def value_in_si(name: str, value: float | str) -> float:
-    """A value, or a text as a user types it: `60deg`, `bdf`, `true`."""
+def description(fmu: Path = ROOT / "wheel.fmu") -> bytes:
+    """modelDescription.xml of the FMU or, before it is built, of the project."""
+    try:
+        return ZipFile(fmu).read("modelDescription.xml")
+    except (OSError, BadZipFile, KeyError):
+        return (ROOT / "modelDescription.xml").read_bytes()
+
+
+@cache
+def quantities() -> dict[str, Variable]:
+    """The variables of the project's FMU, and what a measure takes besides."""
+    return values.variables(description()) | QUANTITIES
+
+
+def in_si(name: str, value: float | str) -> float:
+    """A value, or a text as a user types it: `60deg`, `bdf`, `true`; nan for a name that is unknown."""
     if not isinstance(value, str):
         return float(value)
-    from wheelfmu.fmu.values import variables
-
-    known = variables(description(ROOT / "wheel.fmu"))
-    return known[name].number_of(value) if name in known else float(value)
-
-
-def in_si(quantity: str, limit: str) -> float:
-    """A limit, which may have a unit; those that a worker gets have none."""
-    with suppress(ValueError):
-        return float(limit)
-    from wheelfmu.fmu.values import number, variables
-
-    units = {name: v.unit or "1" for name, v in variables(description(ROOT / "wheel.fmu")).items()}
-    units |= {PLANE_ANGLE: "rad", SLIP: "m/s"}
-    return number(quantity, limit, units[quantity]) if quantity in units else math.nan
+    return quantities()[name].number_of(value) if name in quantities() else math.nan
 
 
 def can_change(variable: Variable) -> bool:
@@ -153,41 +156,28 @@ def counters_of(variables: Mapping[str, Variable]) -> list[str]:
     return [name for name, v in variables.items() if v.type == "Integer" and name.startswith("n_")]
 
 
-def description(fmu: Path) -> bytes:
-    """modelDescription.xml of the FMU or, before it is built, of the project."""
-    try:
-        return ZipFile(fmu).read("modelDescription.xml")
-    except (OSError, BadZipFile, KeyError):
-        return (ROOT / "modelDescription.xml").read_bytes()
-
-
 def factors(body: Mapping[str, float]) -> dict[str, float]:
     """By variable: its value in a motion of this wheel over that in the similar motion of the paper's."""
-    from wheelfmu.fmu.values import scale, variables
-
-    text = description(ROOT / "wheel.fmu")
-    units = ElementTree.fromstring(text).iter("Unit")
+    units = ElementTree.fromstring(description()).iter("Unit")
     powers = {u.get("name"): {n: int(u[0].get(n, 0)) for n in ("kg", "m", "s")} for u in units}
-    return {name: scale(body, **powers.get(v.unit, {})) for name, v in variables(text).items()}
+    return {name: scale(body, **powers.get(v.unit, {})) for name, v in quantities().items()}
 
 
 def check_names(names: Iterable[str], causalities: tuple[str, str], known: Mapping[str, Variable]) -> None:
-    """StudyError about the first name that is not a variable of these causalities."""
-    from wheelfmu.fmu.values import suggestion
-
+    """Fault about the first name that is not a variable of these causalities."""
     there = {name: v.description or "" for name, v in known.items() if v.causality in causalities}
     for name in names:
         if name not in there:
             hint = suggestion(name, there) or " docs/variables.md lists them."
             kind = "a parameter or input" if causalities == SETTABLE else "an output or local variable"
-            raise StudyError(f"'{name}' is not {kind} of this FMU.{hint}")
+            raise Fault(f"'{name}' is not {kind} of this FMU.{hint}")
 
 
 def quoted(names: Iterable[str]) -> str:
     return ", ".join(f"'{name}'" for name in dict.fromkeys(names))
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Study:
     """Many wheels. Names are those of modelDescription.xml, values in SI units (rad, m, s).
 
@@ -215,56 +205,59 @@ class Study:
     body: str | None = None
 
     def __post_init__(self) -> None:
-        try:  # Python's numbers: equal studies have equal fields, whatever types they were given in
-            columns = {kind: getattr(self, kind).items() for kind in KINDS}
-            plain = {kind: {n: [value_in_si(n, x) for x in xs] for n, xs in of} for kind, of in columns.items()}
-            plain |= {"values": {n: value_in_si(n, x) for n, x in self.values.items()}, "history": [*self.history]}
-        except (TypeError, ValueError) as fault:
-            raise StudyError(f"A name that varies needs a list of numbers ({fault}).") from None
-        for name, value in plain.items():
+        try:  # Python's own types: equal studies have equal fields, whatever they were given as
+            columns = {kind: getattr(self, kind).items() for kind in ("grid", "list")}
+            plain: dict[str, Any] = {
+                kind: {n: [in_si(n, x) for x in xs] for n, xs in of} for kind, of in columns.items()
+            }
+            plain["values"] = {n: in_si(n, x) for n, x in self.values.items()}
+        except TypeError as fault:
+            raise Fault(f"A name that varies needs a list of numbers ({fault}).") from None
+        plain |= {"measures": {**self.measures}, "history": [*self.history]}
+        times = {name: getattr(self, name) for name in ("stop_time", "interval", "tolerance", "branch_at")}
+        for name, value in (plain | {n: float(x) for n, x in times.items() if x is not None}).items():
             object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other one asks the same, of whatever subclass."""
+        return isinstance(other, Study) and asdict(self) == asdict(other)
 
     def scaled(self, wheel: str) -> Study:
         """The same study of a preset (examples/wheels.json): a wheel of the paper's shape would move alike.
 
-        Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. StudyError if it sets such a parameter.
+        Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. Fault if it sets such a parameter.
         """
-        from wheelfmu.fmu.values import MOMENTS, preset, scale
-
         body = {n: x for n, x in preset(wheel).items() if not (self.body and n in MOMENTS)}
         factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
         if both := sorted({*body} & {*given} - {"phi_dot_start"}):
-            raise StudyError(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
+            raise Fault(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
 
         def similar(columns: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:
             return {name: [x * factor.get(name, 1.0) for x in column] for name, column in columns.items()}
 
-        return replace(
-            self,
-            **{kind: similar(getattr(self, kind)) for kind in KINDS},
-            **{n: t * slower for n in ("stop_time", "interval", "branch_at") if (t := getattr(self, n))},
-            values={n: x for n, x in body.items() if n not in given}
-            | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
-            measures=self.restated(factor),
-        )
-
-    def restated(self, factor: Mapping[str, float]) -> dict[str, str]:
-        """The measures with limits in SI, times the factors of their variables."""
         passages = {
-            name: f"first({m.quantity} {m.kind} {m.limit * factor.get(m.variables[0], 1.0)!r})"
+            name: f"first({m.quantity} {m.kind} {m.limit * factor.get(m.quantity, 1.0)!r})"
             for name, m in self.parsed.items()
             if m.kind in "<>"
         }
-        return {**self.measures, **passages}
+        return replace(
+            self,
+            grid=similar(self.grid),
+            list=similar(self.list),
+            values={n: x for n, x in body.items() if n not in given}
+            | {n: x * factor.get(n, 1.0) for n, x in self.values.items()},
+            measures={**self.measures, **passages},
+            **{n: t * slower for n in ("stop_time", "interval", "branch_at") if (t := getattr(self, n))},
+        )
 
     @property
     def varied(self) -> dict[str, Sequence[float]]:
         """The names that vary, with their values."""
-        return self.grid | self.list
+        return {**self.grid, **self.list}
 
     @cached_property
     def parsed(self) -> dict[str, Measure]:
-        """The measures by the name of their result; StudyError if one cannot be parsed."""
+        """The measures by the name of their result; Fault if one cannot be parsed."""
         return {name: parse_measure(text) for name, text in self.measures.items()}
 
     @cached_property
@@ -276,51 +269,61 @@ class Study:
     @property
     def times(self) -> Sequence[float]:
         """The communication points in s; only the first and the last if nothing is read in between."""
-        begin, end = self.branch_at or 0.0, float(self.stop_time)
+        begin, end = self.branch_at or 0.0, self.stop_time
         steps = math.ceil((end - begin) / self.interval * (1 - 1e-12)) if self.sampled else 1
         return [*(begin + k * self.interval for k in range(steps)), end]
 
-    def check(self, variables: Mapping[str, Variable]) -> None:
-        """StudyError if a name is unknown or the study does not suit the FMU."""
-        from wheelfmu.fmu.values import MOMENTS, bodies, suggestion
+    def branches(self, variable: Variable) -> bool:
+        """Whether it has its value of the grid or list from branch_at on, not from the start."""
+        return self.branch_at is not None and can_change(variable)
 
+    def check(self, variables: Mapping[str, Variable]) -> None:
+        """Fault if a name is unknown or the study does not suit the FMU."""
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(n for m in self.parsed.values() for n in m.variables), *self.history], READABLE, variables)
+        derived = [*moments(self.body)] if self.body else []
+        columns = self.varied | {name: [x] for name, x in self.values.items()}
         lengths = {name: len(column) for name, column in self.list.items()}
-        empty = quoted(name for name, values in self.varied.items() if not values)
-        every = {name: [*values] for name, values in self.varied.items()} | {n: [x] for n, x in self.values.items()}
-        parts = quoted(n for n, xs in every.items() if variables[n].type != "Real" and any(x % 1 for x in xs))
-        words = quoted(n for n, xs in every.items() if variables[n].type == "Boolean" and {*xs} - {0, 1})
+        empty = quoted(name for name, xs in columns.items() if not xs)
+        parts = quoted(n for n, xs in columns.items() if variables[n].type != "Real" and any(x % 1 for x in xs))
+        words = quoted(n for n, xs in columns.items() if variables[n].type == "Boolean" and {*xs} - {0, 1})
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
-        derived = MOMENTS if self.body else ()
-        fixed = quoted(name for name in derived if name in self.varied | self.values)
-        names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables)]
-        names += [name for name in derived if name not in self.varied]
+        fixed = quoted(name for name in derived if name in columns)
+        names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables), *derived]
         twice = quoted(name for name in names if names.count(name) > 1)
         shared = self.branch_at is None or any(can_change(variables[name]) for name in self.varied)
-        still = "" if shared else quoted(self.varied)
         in_order = 0 <= (self.branch_at or 0.0) < self.stop_time < math.inf and 0 < self.interval < math.inf
-        for fault, text in (
-            (bool(self.grid) == bool(self.list), "Give either grid or list: it lists the wheels."),
-            (
-                self.body not in (None, *bodies()),
-                f"There is no body '{self.body}'; there are {', '.join(bodies())}."
-                + suggestion(self.body or "", dict.fromkeys(bodies(), "")),
-            ),
-            (fixed, f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out."),
-            (parts, f"The values of {parts} must be whole numbers."),
-            (words, f"The values of {words} must be true or false, 1 or 0."),
-            (empty, f"The values of {empty} must be a list of numbers, at least one."),
-            (both, f"{both} is in values and among the names that vary."),
-            (len({*lengths.values()}) > 1, f"The columns of a list must have one length; these have: {lengths}."),
-            (integers, f"{integers} is an integer: only its value at the end can be measured."),
-            (twice, f"{twice} would name two things in the results; give the measure another name."),
-            (
-                still,
-                f"With branch_at nothing would be shared: {still} cannot change in a run. Vary s or an input too.",
-            ),
-            (not in_order, "The interval must be above zero, and branch_at from zero to below a finite stop_time."),
-        ):
-            if fault:
-                raise StudyError(text)
+        refused = {
+            "Give either grid or list: it lists the wheels.": bool(self.grid) == bool(self.list),
+            f"{fixed} follows from m, r_0 and r with body {self.body}: leave one of the two out.": fixed,
+            f"The values of {parts} must be whole numbers.": parts,
+            f"The values of {words} must be true or false, 1 or 0.": words,
+            f"The values of {empty} must be a list of numbers, at least one.": empty,
+            f"{both} is in values and among the names that vary.": both,
+            f"The columns of a list must have one length; these have: {lengths}.": len({*lengths.values()}) > 1,
+            f"{integers} is an integer: only its value at the end can be measured.": integers,
+            f"{twice} would name two things in the results; give the measure another name.": twice,
+            f"With branch_at nothing would be shared: {quoted(self.varied)} cannot change in a run. "
+            "Vary s or an input too.": not shared,
+            "The interval must be above zero, and branch_at from zero to below a finite stop_time.": not in_order,
+        }
+        for text, found in refused.items():
+            if found:
+                raise Fault(text)
+
+    def starts(self, variables: Mapping[str, Variable]) -> Iterator[dict[str, float]]:
+        """The parameters with which wheels start; those that vary are mass, size and moments alone."""
+        same = {name: v.preset for name, v in variables.items() if v.causality == "parameter"} | self.values
+        varied = {name: xs for name, xs in self.varied.items() if name in (*SIZE, *MOMENTS)}
+        for xs in zip(*varied.values(), strict=True) if self.list and varied else product(*varied.values()):
+            own = same | dict(zip(varied, xs, strict=True))
+            yield own | (moments(self.body, *(own[name] for name in SIZE)) if self.body else {})
+
+    def doubt(self, variables: Mapping[str, Variable]) -> str:
+        """One sentence if there are wheels that no body can be, with their number; else nothing."""
+        said = [values.doubt(own) for own in self.starts(variables)]
+        found = [text for text in said if text]
+        wheels = math.prod(map(len, self.grid.values())) * max(map(len, self.list.values()), default=1)
+        count = len(found) * wheels // len(said)
+        return f"{count} of {wheels} wheels cannot exist. The first: {found[0]}" if found else ""

@@ -4,7 +4,7 @@ The caller uploads wheel.fmu with this package and the compiled march.c in it. D
 too, before they get any task. Wheels run one after the other, with fmi2Reset between them, never a second instance;
 march.c steps along the communication points, where Python would take longer than the wheel. A start that several wheels
 share runs once. A wheel that fails is a status with the FMU's message; nothing in run_block raises because of what a
-wheel does. A worker loads zarr only to write its results itself; where it cannot reach the caller's store, which has
+wheel does. A worker loads xarray only to write its results itself; where it cannot reach the caller's store, which has
 the caller's mark, they go back to the caller.
 """
 
@@ -12,7 +12,6 @@ import shutil
 import subprocess
 import zipfile
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from ctypes import CDLL, byref, c_size_t, c_uint, c_void_p
 from functools import cache
@@ -24,22 +23,23 @@ import numpy as np
 from distributed import get_worker
 from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate
+from fmpy.fmi2 import FMU2Slave, fmi2FMUstate
 from numpy.typing import NDArray
 
-from .plan import Status, Study, StudyError, can_change, counters_of
+from wheelfmu.fmu.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
+from wheelfmu.fmu.values import Fault
+
+from .plan import Status, Study, counters_of
 
 Array = NDArray[np.float64]
 Result = dict[str, NDArray]
 Values = Mapping[str, float]
 # The fate of the wheel, its time [s], a row of samples at each time that is reached.
-Run = tuple[Status, float | None, Array]
-OK, WARNING, DISCARD = range(3)  # fmi2Status
-LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
+Run = tuple[Status, float, Array]
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
 NO_ROWS = np.empty((0, 0))
 NUMBERS = {"Real": float, "Integer": int, "Boolean": int}
-Region = tuple[slice, ...]  # of the results: the wheels of a chunk
+Region = dict[str, slice]  # of the results, by dimension: the wheels of a chunk
 MARK = "caller"  # the attribute by which a worker recognizes the caller's store
 _turn = Lock()  # a worker's threads take turns at the instance
 # Words of the FMU's message, for each end of a run.
@@ -51,32 +51,32 @@ ENDINGS = {
 }
 
 
+class FMU2Raising(FMU2Wheel):
+    """An instance that raises FMICallException where a call fails."""
+
+    _call = FMU2Slave._call
+
+
 class Instance:
-    """The only instance of a worker, made by fmpy."""
+    """The only instance of a worker."""
 
     def __init__(self, folder: str) -> None:
-        description = read_model_description(folder, validate=False)
-        self.variables = {v.name: v for v in description.modelVariables}
+        self.fmu = FMU2Raising(folder, read_model_description(folder, validate=False)).new()
+        self.variables = self.fmu.variables
         self.counters = counters_of(self.variables)
-        self.messages: list[str] = []  # since the start of the run
-        of = {"guid": description.guid, "modelIdentifier": description.coSimulation.modelIdentifier}
-        self.fmu = FMU2Slave(unzipDirectory=folder, instanceName="wheel", **of)
-        callbacks = fmi2CallbackFunctions()  # the logger of instantiate_fmu would stay that of the process
-        callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
-        self.fmu.instantiate(callbacks=callbacks)
         self.typed = cache(self._typed)
         self._snapshot = fmi2FMUstate()  # at branch_at
         self._kept: tuple | None = None  # values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
 
-    def _log(self, _environment: object, _name: bytes, status: int, _category: bytes, text: bytes) -> None:
-        if status != OK:
-            self.messages.append(text.decode())
+    def said(self) -> str:
+        """The messages since the start of the run."""
+        return " ".join(message.text for message in self.fmu.messages if message.status != OK)
 
     def _typed(self, names: tuple[str, ...]) -> list[tuple[str, list[str], list[int]]]:
         """For each type among the names: the type, the names and their value references."""
         of = {kind: [name for name in names if self.variables[name].type == kind] for kind in NUMBERS}
-        return [(kind, mine, [self.variables[n].valueReference for n in mine]) for kind, mine in of.items() if mine]
+        return [(kind, mine, self.fmu.refer(*mine)) for kind, mine in of.items() if mine]
 
     def set(self, values: Values) -> None:
         for kind, names, references in self.typed(tuple(values)):
@@ -93,40 +93,40 @@ class Instance:
 
         FMICallException if the FMU refuses a value.
         """
-        fmu, start = self.fmu, (values, study.tolerance, study.branch_at)
+        fmu, at, start = self.fmu, study.branch_at or 0.0, (values, study.tolerance, study.branch_at)
         if self._kept and self._kept[0] == start:
-            self.messages = [*self._kept[1]]
+            fmu.messages = [*self._kept[1]]
             fmu.setFMUstate(self._snapshot)
-            return Status.reached, study.branch_at, NO_ROWS
-        self._kept, self.messages = None, []
+            return Status.reached, at, NO_ROWS
+        self._kept, fmu.messages = None, []
         try:
             fmu.reset()
         except FMICallException:  # after fmi2Fatal the standard allows no further call to an instance
-            fmu.instantiate(callbacks=fmu.callbacks)
+            self.fmu = fmu = fmu.new()
         self.set(values)
         fmu.setupExperiment(study.tolerance)
         fmu.enterInitializationMode()
         fmu.exitInitializationMode()
         if study.branch_at is None:
-            return Status.reached, 0.0, NO_ROWS
-        run = self.march(np.array([0.0, study.branch_at]), ())
+            return Status.reached, at, NO_ROWS
+        run = self.march(np.array([0.0, at]), ())
         if run[0] == Status.reached:
             fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
-            self._kept = (start, [*self.messages])
+            self._kept = (start, [*fmu.messages])
         return run
 
     def march(self, times: Array, names: Sequence[str]) -> Run:
         """Steps along the times from times[0], the present one, and reads these Real variables at each."""
         rows, reached = np.empty((len(times), len(names))), c_size_t()
-        references = (c_uint * len(names))(*(self.variables[name].valueReference for name in names))
+        references = (c_uint * len(names))(*self.fmu.refer(*names))
         calls = self.fmu.dll.fmi2DoStep, self.fmu.dll.fmi2GetReal, c_void_p(self.fmu.component)
         way = times.ctypes, c_size_t(len(times)), references, c_size_t(len(names)), rows.ctypes, byref(reached)
         status = self._march(*calls, *way)
         end, fate = times[max(reached.value, 1) - 1], Status.reached if status <= WARNING else Status.failed
         if status == DISCARD:
-            end, logged = self.fmu.getRealStatus(LAST_SUCCESSFUL_TIME), " ".join(self.messages)
-            if self.fmu.getBooleanStatus(TERMINATED):
-                fate = next((fate for words, fate in ENDINGS.items() if words in logged), fate)
+            end = self.fmu.status(LAST_SUCCESSFUL_TIME)
+            if self.fmu.status(TERMINATED):
+                fate = next((fate for words, fate in ENDINGS.items() if words in self.said()), fate)
         return fate, end, rows[: reached.value]
 
     def wheel(self, start: Values, change: Values, study: Study, times: Array) -> dict[str, object]:
@@ -142,12 +142,12 @@ class Instance:
                 run = self.march(times, study.sampled)
         except FMICallException:
             run = Status.refused, np.nan, NO_ROWS
-            self.messages = self.messages or ["A value is outside its limits."]
         else:
             with suppress(FMICallException):  # an instance that failed may be unable to answer
                 last = self.get(tuple(asked))
         status, end, rows = run
-        result = {"status": status, "message": " ".join(self.messages), "end_time": end}
+        outside = "A value is outside its limits." * (status == Status.refused)
+        result = {"status": status, "message": self.said() or outside, "end_time": end}
         result["fmu_time"] = perf_counter() - begin
         result |= {name: last.get(name, -1) for name in self.counters}
         samples, t = dict(zip(study.sampled, rows.T, strict=False)) if rows.size else {}, times[: len(rows)]
@@ -167,7 +167,7 @@ def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Resul
     Of the study only what all its wheels have in common is used.
     """
     columns = np.broadcast_arrays(*points.values())
-    late = [name for name in points if study.branch_at is not None and can_change(fmu.variables[name])]
+    late = [name for name in points if study.branches(fmu.variables[name])]
     changes = [dict(zip(points, row, strict=True)) for row in zip(*(x.ravel().tolist() for x in columns), strict=True)]
     starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
     order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
@@ -206,35 +206,35 @@ def instance(upload: str) -> Instance:
 
 
 def write(place: str, mark: str, region: Region, result: Result) -> None:
-    """The columns of a region side by side, then the status; FileNotFoundError if the caller's mark is not there.
+    """The columns of a region, then the status; FileNotFoundError if the caller's mark is not there.
 
     Each file is renamed when it is complete. A chunk without status is run again, whatever else of it is there.
     """
+    import xarray
     import zarr
 
     group = zarr.open_group(place, mode="r+")
     if group.attrs.get(MARK) != mark:
         raise FileNotFoundError(f"{place} does not have the mark of this caller.")
-    others = result.keys() - {"status"}
-    with ThreadPoolExecutor(len(result)) as pool:  # the files of a remote store travel at the same time
-        list(pool.map(lambda name: group[name].set_basic_selection(region, result[name]), others))
-    group["status"][region] = result["status"]
+    columns = {name: ([*region, "time"][: x.ndim], x) for name, x in result.items() if name != "status"}
+    xarray.Dataset(columns).to_zarr(place, mode="r+", region=region, consolidated=False, zarr_format=3)
+    group["status"][tuple(region.values())] = result["status"]
 
 
-# The package as a worker gets it: studies alone, and where the whole is installed also that.
+# The package as a worker gets it: two of its parts, and where the whole is installed also that.
 JOINED = "from pkgutil import extend_path\n\n__path__ = extend_path(__path__, __name__)\n"
 
 
 def pack(fmu: str | Path, path: Path) -> Path:
     """Writes the file to be uploaded: the FMU, with this package's sources and the loop over the steps, compiled."""
-    library, source = path.with_name(MARCH), Path(__file__).with_name("march.c")
+    library, here = path.with_name(MARCH), Path(__file__).parent
     if not shutil.which("cc"):
-        raise StudyError("A study needs a C compiler, cc, on the machine where it is started.")
-    subprocess.run(["cc", "-O2", "-shared", "-fPIC", source, "-o", library], check=True)
+        raise Fault("A study needs a C compiler, cc, on the machine where it is started.")
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", here / "march.c", "-o", library], check=True)
     shutil.copy(fmu, path)
     with zipfile.ZipFile(path, "a") as package:
         package.write(library, MARCH)
         package.writestr("wheelfmu/__init__.py", JOINED)
-        for source in Path(__file__).parent.glob("*.py"):
-            package.write(source, f"wheelfmu/studies/{source.name}")
+        for source in [*here.glob("*.py"), *here.with_name("fmu").glob("*.py")]:
+            package.write(source, f"wheelfmu/{source.parent.name}/{source.name}")
     return path
