@@ -290,10 +290,11 @@ def write_rates(ax: Axes, scene: Scene) -> None:
 def write_beside(ax: Axes, texts: dict[tuple[float, float], str], lines: list[Array]) -> None:
     """Texts beside points of data, clear of the lines and of each other."""
     ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())  # no line moves them any more
-    (x, y), (xs, ys) = zip(*texts, strict=True), zip(*(line.T for line in lines), strict=True)
-    look = {"textsize": style.NOTE, "textcolor": style.INK, "draw_lines": False}
-    place = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
-    textalloc.allocate(ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, x_lines=xs, y_lines=ys, **look, **place)
+    x, y = np.transpose([*texts])
+    curves: style.Look = {"x_lines": [line[:, 0] for line in lines], "y_lines": [line[:, 1] for line in lines]}
+    look: style.Look = {"textsize": style.NOTE, "textcolor": style.INK, "draw_lines": False}
+    place: style.Look = {"min_distance": 0.015, "max_distance": 0.25, "nbr_candidates": 200}
+    textalloc.allocate(ax, x, y, [*texts.values()], x_scatter=x, y_scatter=y, **curves, **look, **place)
 
 
 def _rates(scene: Scene) -> tuple[Array, Array, Array]:

@@ -367,7 +367,7 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
         scenes = [replace(scenes[1], alone="without rolling friction the diagrams look alike")]
     every = PAPERS if paper else panels_of(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": every}
-    wanted = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
+    wanted: list[tuple] = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
     for scene in scenes:
         friction = int(scene.value("s") > 0)
         for panel in every:

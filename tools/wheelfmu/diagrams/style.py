@@ -26,6 +26,8 @@ PALETTE = {name: tone["light"] for name, tone in COLOURS["palette"].items()}
 BLUE, SKY, VERMILLION, ORANGE = (PALETTE[name] for name in ("blue", "sky", "vermillion", "orange"))
 GREEN, PURPLE, INK, GREY = (PALETTE[name] for name in ("green", "purple", "ink", "grey"))
 
+Look = dict[str, Any]  # keywords of matplotlib
+
 MM = 1.0 / 25.4  # inch per millimetre
 STRIP = 0.025  # of the axes: the height of a mark at the margin
 NOTE = 7.5  # points, the size of a note
@@ -59,13 +61,14 @@ def strip(ax: Axes, edges: ArrayLike, shown: ArrayLike, color: str, top: bool = 
     """A mark at the lower or upper margin of a time axis where `shown`, between each two edges."""
     low, high = (1.0 - STRIP, 1.0) if top else (0.0, STRIP)
     heights = np.where(shown, high, low)
-    place: dict[str, Any] = {"transform": ax.get_xaxis_transform()}
+    place: Look = {"transform": ax.get_xaxis_transform()}
     ax.add_artist(StepPatch(heights, edges, baseline=low, fill=True, color=color, linewidth=0, zorder=1, **place))
 
 
 def note(ax: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **how: Any) -> None:
     """Small text beside the data point `at`, moved by `shift` in typographic points."""
-    ax.annotate(text, at, xytext=shift, **{"fontsize": NOTE, "textcoords": "offset points"} | how)
+    look: Look = {"fontsize": NOTE, "textcoords": "offset points"} | how
+    ax.annotate(text, at, xytext=shift, **look)
 
 
 def save(fig: Figure, stem: Path, dpi: int = 300) -> list[Path]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from wheelfmu.fmu.driver import Values
 from wheelfmu.truth import cases, measure
 from wheelfmu.truth import exact_motions as exact
 from wheelfmu.truth.closed_forms import upright_deceleration
@@ -64,7 +65,8 @@ def draw_tolerances(tables: Tables) -> Sheet:
 @part(20, {"spin, rad/s": (2.0, 10.0, 100.0, 300.0, 1000.0)})
 def spins(report: Report, spin: float) -> Row:
     """fast spin: error / range / tolerance"""
-    start, times = {"theta_start": 1.4, "phi_dot_start": -spin, "keep_contact": True}, np.linspace(0, 1, 101)
+    start: Values = {"theta_start": 1.4, "phi_dot_start": -spin, "keep_contact": True}
+    times = np.linspace(0, 1, 101)
     want = headline(Scene(start, 1.0), 101)
     runs = {t: report.library.simulate(times, float(t), **start) for t in ("1e-6", "1e-8", "1e-10")}
     return {f"at {t}": over_range(columns(run), want) / float(t) for t, run in runs.items()}

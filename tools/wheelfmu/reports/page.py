@@ -100,11 +100,11 @@ class Report:
 
     def measure(self, part: Part) -> None:
         for name, found in part(self).items():
-            if np.isscalar(found):
+            if isinstance(found, pd.DataFrame | list):
+                self.tables[name] = pd.DataFrame(found)
+            else:
                 assert (self.name, name) in REQUIREMENTS.index, f"requirements.csv does not list {name} of {self.name}"
                 self.figures[name] = float(found)
-            else:
-                self.tables[name] = pd.DataFrame(found)
 
     def value(self, figure: Any) -> float:
         """What a part has returned, or a cell or reduction of a table; NaN: not yet."""

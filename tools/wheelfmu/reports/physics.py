@@ -31,7 +31,8 @@ HEIGHT = PAPER.r_0 + PAPER.r  # m, of O when upright
 UPRIGHT = np.pi / 2
 CRITICAL = critical_spin(PAPER)  # rad/s
 TIPPING = np.sqrt(PAPER.m * PAPER.g * PAPER.r_0 / (PAPER.J_x + PAPER.m * HEIGHT**2))  # 1/s, of a wheel that stands
-FRICTION = {"s": 0.03}  # m
+Values = dict[str, Any]  # of the FMU's variables
+FRICTION: Values = {"s": 0.03}  # m
 TIME, ENERGY = "time $t$ [s]", "energy $E$ [J]"
 
 
@@ -59,8 +60,8 @@ def stays_up(report: Report) -> Row:
         for share, colour in ((0.9, style.VERMILLION), (0.99, style.ORANGE), (1.01, style.SKY), (1.1, style.BLUE)):
             found = run(report, 6, theta_start=start, phi_dot_start=-share * CRITICAL)
             left.plot(found.t, np.degrees(lean(found)), color=colour, label=f"{share:g} × critical")
-        limits = {"xlim": (0, 6), "ylim": (3e-3, 3e3)}
-        label(left, TIME, "size of the lean [deg]", "Start: a lean of 0.01°", "y", "upper left", 2, **limits)
+        title = "Start: a lean of 0.01°"
+        label(left, TIME, "size of the lean [deg]", title, "y", "upper left", 2, xlim=(0, 6), ylim=(3e-3, 3e3))
         for degrees, colour in ((15, style.GREEN), (0.01, style.BLUE)):
             starts = ({"theta_start": UPRIGHT - np.radians(degrees), "phi_dot_start": -spin} for spin in spins)
             largest = [np.degrees(lean(run(report, 20, **start)).max()) for start in starts]
@@ -78,7 +79,7 @@ def stays_up(report: Report) -> Row:
 def held(report: Report) -> Row:
     """a wheel that a brake holds at omega_z = 0 nods and turns and loses nothing"""
     theta, turn = np.radians(75), 4.0
-    start = {"theta_start": theta, "phi_dot_start": -turn * np.cos(theta), "psi_dot_start": turn}
+    start: Values = {"theta_start": theta, "phi_dot_start": -turn * np.cos(theta), "psi_dot_start": turn}
     found = run(report, 2, 2e-3, Schedule(((0.0, {"M_brake": 200.0}),)), **start)
     curves = {
         (r"$\theta$ [deg]", "it nods"): np.degrees(found["theta"]),
@@ -175,15 +176,15 @@ def path(report: Report) -> Row:
 @part(1)
 def tipping(report: Report) -> Row:
     """a wheel that stands exactly upright: rounding grows like cosh until it tips"""
-    rest, rolling = {"theta_start": UPRIGHT, "phi_dot_start": 0.0}, {"phi_dot_start": -2.0}
+    rest: Values = {"theta_start": UPRIGHT, "phi_dot_start": 0.0}
     found = run(report, 12, 5e-3, **rest)
     with picture(report, "physics_tipping", "a") as (ax,):
         ax.plot(found.t, np.where(lean(found) > 0, lean(found), np.nan), color=style.BLUE, label="wheel.fmu")
         growth = np.cos(UPRIGHT) * np.cosh(TIPPING * found.t)
         ax.plot(found.t, growth, "--", color=style.ORANGE, label=r"$6\cdot10^{-17}\cosh\nu t$")
-        title, limits = "At rest, theta_start = the number nearest to $\\pi/2$", {"xlim": (0, 10), "ylim": (1e-17, 3)}
-        label(ax, TIME, "size of the lean [rad]", title, "y", "upper left", **limits)
-    tilted = lean(run(report, 15, theta_start=UPRIGHT - 1e-9, **rolling)).max()
+        title = "At rest, theta_start = the number nearest to $\\pi/2$"
+        label(ax, TIME, "size of the lean [rad]", title, "y", "upper left", xlim=(0, 10), ylim=(1e-17, 3))
+    tilted = lean(run(report, 15, theta_start=UPRIGHT - 1e-9, phi_dot_start=-2.0)).max()
     by_method = [run(report, 12, 5e-3, method=method, **rest).t[-1] for method in (2, 3, 4)]
     tips = {"tips": found.t[-1], "tips_first": min(by_method), "tips_last": max(by_method)}
     tips |= {"tips_exact": fall_time(PAPER, UPRIGHT), "tips_leaning": fall_time(PAPER, UPRIGHT - np.radians(1))}
@@ -192,7 +193,8 @@ def tipping(report: Report) -> Row:
 
 CONTACT = re.compile(r"t = (\S+) s: the wheel (?:starts to slide|stops sliding)\.")
 DISC = Wheel(m=1.0, r_0=1.0, r=0.0, J_x=0.25, J_y=0.25, J_z=0.5)  # thin, homogeneous
-WET, SLIPPERY = {"mu_max": 0.45, "mu_slide": 0.4}, {"mu_max": 0.3, "mu_slide": 0.25}
+WET: Values = {"mu_max": 0.45, "mu_slide": 0.4}
+SLIPPERY: Values = {"mu_max": 0.3, "mu_slide": 0.25}
 
 
 @part(5)
@@ -231,7 +233,7 @@ def least_jamming(wheel: Wheel) -> float:
 def brake_hold_steer(report: Report) -> Row:
     """three means to slow an upright wheel down; a wheel on a suspension that is steered and stopped"""
     brake, torque = (Schedule(((0.0, {}), (1.0, {name: 20.0}))) for name in ("M_brake", "M_3"))
-    ways = {
+    ways: dict[str, tuple[str, str, Values]] = {
         "M_brake = 20 N m from 1 s on": (style.BLUE, "-", {"inputs": brake}),
         "M_3 = 20 N m from 1 s on": (style.VERMILLION, "--", {"inputs": torque}),
         "s = 0.03 m": (style.GREEN, "-", FRICTION),

@@ -6,6 +6,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
+from matplotlib.figure import FigureBase
 
 from wheelfmu.diagrams import style
 
@@ -34,7 +35,7 @@ def label(
         ax.legend(loc=legend, ncols=columns)
 
 
-def legend_below(figure: Sheet, axes: list[Axes], columns: int = 4) -> None:
+def legend_below(figure: FigureBase, axes: list[Axes], columns: int = 4) -> None:
     """Each label once."""
     both = [ax.get_legend_handles_labels() for ax in axes]
     once = {label: handle for handles, labels in both for handle, label in zip(handles, labels, strict=True)}

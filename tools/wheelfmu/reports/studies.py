@@ -6,6 +6,7 @@ from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,8 +16,8 @@ from wheelfmu.fmu.paths import build_folder
 from .page import Report, part
 
 REPEATS = 3
-LOWEST = {"measures": {"lowest": "lowest"}}
-ASKED = {  # what is asked, and of how many wheels
+LOWEST: dict[str, Any] = {"measures": {"lowest": "lowest"}}
+ASKED: dict[str, tuple[dict[str, Any], int]] = {  # what is asked, and of how many wheels
     "state at the end": ({"measures": {"theta_end": "theta"}}, 96_000),
     "state at the end, with friction": ({"measures": {"theta_end": "theta"}, "values": {"s": 0.03}}, 19_200),
     "lowest angle over steps of 0.1 s": (LOWEST | {"interval": 0.1}, 48_000),

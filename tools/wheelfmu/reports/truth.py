@@ -12,7 +12,7 @@ from wheelfmu.fmu.driver import HEADLINE
 from wheelfmu.truth.kept import kept
 from wheelfmu.truth.motion import Run
 from wheelfmu.truth.orbit import headline_of, reduced
-from wheelfmu.truth.reference import Inputs, solve
+from wheelfmu.truth.reference import Inputs, Solution, solve
 from wheelfmu.truth.reference.modes import rolling
 from wheelfmu.truth.reference.motion import initial_state
 from wheelfmu.truth.scenes import Scene
@@ -27,19 +27,19 @@ def headline(scene: Scene, points: int, label: str = "", inputs: Inputs | None =
     def solution() -> Array:
         if scene.start.get("friction_law") == "regularized":
             return stiff(scene, times)
-        return columns(solve(scene.wheel, scene.motion, times, given, rtol=1e-13))
+        return columns(solve(scene.wheel, scene.motion, times.tolist(), given, rtol=1e-13))
 
     return kept(("headline", scene, points, label), solution)
 
 
 def stiff(scene: Scene, times: Array) -> Array:
     """The regularized law by SciPy's Radau, without inputs."""
-    rate, y_0 = rolling(scene.wheel, scene.start.get("omega_s", 1e-3)), initial_state(scene.wheel, scene.motion)
+    rate, y_0 = rolling(scene.wheel, float(scene.start.get("omega_s", 1e-3))), initial_state(scene.wheel, scene.motion)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of Radau's difference quotients
         found = solve_ivp(rate, (0, scene.duration), y_0, "Radau", times, rtol=1e-11, atol=1e-12)
     return headline_of(np.array([reduced(state) for state in found.y.T]))
 
 
-def columns(run: Run) -> Array:
+def columns(run: Run | Solution) -> Array:
     return np.column_stack([run[name] for name in HEADLINE])

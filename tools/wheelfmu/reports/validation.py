@@ -117,8 +117,8 @@ def picture(tables: Tables) -> Sheet:
     left.legend(loc="upper center", ncols=2, fontsize=7)
     title, y = "Measured, and a constant s (dashed)", "rolling resistance $1000\\,C$"
     plots.label(left, "rim speed [m/s]", y, title, ylim=(0, 6.5))
-    title, limits = "Coast-down: measured (dots), wheel.fmu (lines)", {"xlim": (0, None), "ylim": (0, 22)}
-    plots.label(right, "time [s]", "rim speed [m/s]", title, **limits)
+    title = "Coast-down: measured (dots), wheel.fmu (lines)"
+    plots.label(right, "time [s]", "rim speed [m/s]", title, xlim=(0, None), ylim=(0, 22))
     return sheet
 
 

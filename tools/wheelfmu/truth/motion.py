@@ -2,7 +2,7 @@
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -91,7 +91,7 @@ class Library:
         """A new instance in the state "instantiated"."""
         return self.loaded.new(logging, name)
 
-    def simulate(self, times: Sequence[float], tolerance=None, inputs=None, **start: Value) -> Run:
+    def simulate(self, times: Iterable[float], tolerance=None, inputs=None, **start: Value) -> Run:
         """The motion from times[0], read at `times` (rising); it may end early, but is not refused."""
         done = run(self, start, times, tolerance, inputs)
         if done.status > WARNING and done.end is None:
@@ -110,7 +110,7 @@ def feed(wheel: FMU2Wheel, inputs: Schedule, t: float) -> int:
     return status
 
 
-def run(library: Library, values: Values, times: Sequence[float], tolerance=None, inputs=None, rates=()) -> Run:
+def run(library: Library, values: Values, times: Iterable[float], tolerance=None, inputs=None, rates=()) -> Run:
     """Steps through `times` (the first is the start) and the jumps of the inputs; a row at each of the times.
 
     At a jump the row is from the right. A run that is refused has no columns.
