@@ -115,8 +115,16 @@ OF_RUN |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)",
 OF_RUN |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
 OF_RUN |= {"body=ball": "There is no body", "v=3 phi_dot_start=-2": "phi_dot_start follows from v"}
 OF_RUN |= {"body=torus m=12kg J_z=1": "J_z follows from m, r_0 and r with body=torus"}
+# Of ./scripts/study.
+OF_STUDY = {"--vary s=0:1:one": "write --vary NAME=1,2,3 or NAME=first:last:count", "": "Which wheels? Give an example"}
+OF_STUDY |= {
+    "fate": "the examples are fates, grip, uptime. Do you mean fates?",
+    "--body ball --vary s=0,1": "torus, disc, hoop",
+}
+OF_STUDY |= {"--body disc --vary J_z=1,2": "'J_z' follows from m, r_0 and r with body disc: leave one of the two out"}
 TYPED = [(words, line) for words, *lines in FAULTS.values() for line in lines]
 TYPED += [(words, f"run {line}") for line, words in OF_RUN.items()]
+TYPED += [(words, f"study {line}") for line, words in OF_STUDY.items()]
 
 
 def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import OK, Values
-from wheelfmu.truth.judges import FRICTION, TIMES, error_against, law_bound
+from wheelfmu.truth.judges import FRICTION, TIMES, error_against, law_bound, law_error
 from wheelfmu.truth.kept import kept
 from wheelfmu.truth.motion import Library, Run, run
 from wheelfmu.truth.reference.modes import rolling
@@ -23,11 +23,6 @@ def truth(library: Library) -> Run:
     return run(library, FRICTION, TIMES, 1e-12)
 
 
-def law_error(library: Library, truth: Run, omega_s: float, tolerance: float, method: str = "automatic") -> float:
-    values = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s, "method": method}
-    return error_against(truth, run(library, values, TIMES, tolerance))
-
-
 METHODS = ("automatic", "adams", "bdf", "runge_kutta")
 
 
@@ -36,7 +31,7 @@ METHODS = ("automatic", "adams", "bdf", "runge_kutta")
 @pytest.mark.parametrize("omega_s", [1e-3, 1e-5, 1e-7, 1e-8])
 def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float, tolerance: float, method: str) -> None:
     bound = law_bound(omega_s, tolerance)
-    within(law_error(library, truth, omega_s, tolerance, method), bound, "error of the law / range")
+    within(law_error(library, omega_s, tolerance, method), bound, "error of the law / range")
     lighter = run(library, {"s": 0.025}, TIMES, tolerance)
     beyond(error_against(truth, lighter), bound, "error of another friction / range")
 

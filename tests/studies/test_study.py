@@ -195,28 +195,6 @@ def test_a_ready_wheel_and_body_give_what_the_command_line_does_not() -> None:
         assert (study.values["m"], study.values["r"]) == (0.0085, 0.0011) and "J_z" not in study.values
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("--vary s=zero", 's = "zero" is not a number.'),
-        ("--vary s=0:1:one", "--vary s=0:1:one: write --vary NAME=1,2,3 or NAME=first:last:count."),
-        ("--vary s=0,1 --wheel koin", 'There is no wheel "koin"; there are car_tyre'),
-        ("--body ball --vary s=0,1", 'There is no body "ball"; there are torus, disc, hoop.'),
-        ("--body disc --vary J_z=1,2", "'J_z' follows from m, r_0 and r with body disc: leave one of the two out."),
-        ("--vary theta_strat=1,2", "'theta_strat' is not a parameter or input of this FMU. Do you mean theta_start"),
-        ("--vary s=0,1 --measure low=min(teta)", "'teta' is not an output or local variable"),
-        ("fate", "There is no study fate; the examples are fates, grip, uptime. Do you mean fates?"),
-        ("", "Which wheels?"),
-    ],
-)
-def test_typing_errors_are_found_by_python_alone(words: str, message: str) -> None:
-    """Isolated, so without any installed package, as scripts/help asks before anything is built."""
-    isolated = [sys.executable, "-I", "-S", ROOT / "tools", "study", *words.split()]
-    done = subprocess.run(isolated, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"study: {message}") and len(done.stderr.splitlines()) == 1
-
-
 def test_of_a_ready_body_every_wheel_has_the_moments_of_its_mass_and_size(alone) -> None:
     results = alone(Study(grid={"m": [5.0, 20.0], "r_0": [0.2, 0.3]}, body="torus", stop_time=0.1))
     m, r_0 = results["m"], results["r_0"]

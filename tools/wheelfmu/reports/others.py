@@ -47,21 +47,11 @@ def kane(library: Library) -> Compared:
 
 def modelica(library: Library) -> Compared:
     theirs, ours = read("modelica_wheel"), wheels.modelica(library)
-    drift, own = modelica_drift(), modelica_own(library)
+    drift, own = wheels.modelica_drift(), wheels.modelica_own(library)
     whose = f"the table: its energy drifts by {number(drift)}; wheel.fmu is within {number(own)} m of truth/reference"
     who, scene = "Modelica Standard Library 4.0, reference result", "RollingWheel, 4 s: X_O, Y_O"
     apart = wheels.apart(theirs, wheels.modelica_reference())
     return who, scene, ends(theirs, "x", "y"), ends(ours, "X_O", "Y_O"), apart, whose
-
-
-def modelica_drift() -> float:
-    energy = wheels.modelica_energy()
-    return float(np.abs(energy / energy[0] - 1).max())
-
-
-def modelica_own(library: Library) -> float:
-    true = wheels.modelica_reference()
-    return wheels.apart({"x": true["X_O"], "y": true["Y_O"]}, wheels.modelica(library))
 
 
 def coin(library: Library) -> Compared:
@@ -122,5 +112,5 @@ def siconos(report: Report) -> dict[str, object]:
 def numbers(report: Report) -> dict[str, object]:
     """results of other programs"""
     rows = [of(report.library) for of in (kane, modelica, coin, thrown, critical, legendre)]
-    figures = {"modelica_energy": modelica_drift(), "modelica_own": modelica_own(report.library)}
+    figures = {"modelica_energy": wheels.modelica_drift(), "modelica_own": wheels.modelica_own(report.library)}
     return {"numbers": pd.DataFrame(rows, columns=HEAD)} | figures

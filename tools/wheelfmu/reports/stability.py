@@ -14,8 +14,8 @@ import pandas as pd
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from wheelfmu.fmu.driver import WARNING, Values
-from wheelfmu.truth.judges import FRICTION, TIMES, TOLERANCES, Verdict, error_against, judge_case, law_bound
-from wheelfmu.truth.motion import Library, run
+from wheelfmu.truth.judges import TOLERANCES, Verdict, judge_case, law_bound, law_error
+from wheelfmu.truth.motion import Library
 from wheelfmu.truth.sweep import Case, sweep
 
 from . import plots
@@ -86,9 +86,7 @@ def draw_cases(tables: Tables) -> Sheet:
 @part(10, OF_LAW)
 def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
     """the regularized law in the paper's friction scene, against the exact law"""
-    regularized = {**FRICTION, "friction_law": "regularized", "omega_s": omega_s, "method": method}
-    truth, found = (run(report.library, v, TIMES, t) for v, t in ((FRICTION, 1e-12), (regularized, tolerance)))
-    error = error_against(truth, found)
+    error = law_error(report.library, omega_s, tolerance, method)
     return {"error": error, "error / bound": error / law_bound(omega_s, tolerance)}
 
 

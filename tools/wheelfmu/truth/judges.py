@@ -112,6 +112,12 @@ def error_against(truth: Run, found: Run) -> float:
     return range_error(found, truth, HEADLINE)
 
 
+def law_error(library: Library, omega_s: float, tolerance: float, method: str) -> float:
+    """Of the paper's scene under the regularized law, against that under the exact one."""
+    regularized = FRICTION | {"friction_law": "regularized", "omega_s": omega_s, "method": method}
+    return error_against(run(library, FRICTION, TIMES, 1e-12), run(library, regularized, TIMES, tolerance))
+
+
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 

@@ -70,6 +70,18 @@ def apart(table: dict[str, Array], other: Run | dict[str, Array]) -> float:
     return float(np.hypot(table["x"] - other["X_O"], table["y"] - other["Y_O"]).max())
 
 
+def modelica_own(library: Library) -> float:
+    """Largest distance between the centres by wheel.fmu and by truth/reference, m."""
+    true = modelica_reference()
+    return apart({"x": true["X_O"], "y": true["Y_O"]}, modelica(library))
+
+
+def modelica_drift() -> float:
+    """Largest change of the energy along their table, relative."""
+    energy = modelica_energy()
+    return float(np.abs(energy / energy[0] - 1).max())
+
+
 def modelica_energy() -> Array:
     """Energy along their table, J.
 
