@@ -36,10 +36,8 @@ bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
 
 // (scene, y) => the slip as it would be without friction
 WheelSlip free_slip(const Setup& setup, WheelScene scene, const double* y) {
-  double reduced[WHEEL_MAX_STATES];
-  setup.sliding->reduce(y, reduced);
   scene.ground = WHEEL_GROUND_PULLS;
-  return wheel_slip(&scene, reduced, 0);
+  return slip_of(setup, scene, y, 0);
 }
 
 // Whether a law of a wheel without spin agrees with the motion that it gives.

@@ -147,10 +147,10 @@ double stop_of(const Wheel& w, double t) {
 bool is_about_to_jam(const Wheel& w) {
   constexpr double little_room = 1e-2;
   if (!w.run.in_force.slides()) return false;
-  double y[WHEEL_MAX_STATES], reduced[WHEEL_MAX_STATES];
+  double y[WHEEL_MAX_STATES];
   w.solver.read(w.solver.known_until(), y);
-  w.setup.sliding->reduce(y, reduced);  // whatever acts, the room is the same
-  return wheel_slip(&w.run.in_force.scene, reduced, y[w.setup.sliding->slip_index + 1]).room < little_room;
+  const double chi = y[w.setup.sliding->slip_index + 1];
+  return slip_of(w.setup, w.run.in_force.scene, y, chi).room < little_room;  // the same whatever acts
 }
 
 // Where the wheel rests in a regularized law that is soft enough for DOP853 on a passage, the decay of the law limits

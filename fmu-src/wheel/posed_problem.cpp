@@ -73,9 +73,7 @@ double margin(void* owner, int event, double t, const double* y) {
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
   const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
-  double reduced[WHEEL_MAX_STATES];
-  setup.sliding->reduce(y, reduced);
-  std::fill_n(slopes, chi.size(), -wheel_slip(&scene, reduced, chi.back()).settling);
+  std::fill_n(slopes, chi.size(), -slip_of(setup, scene, y, chi.back()).settling);
 }
 
 // (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment

@@ -266,7 +266,7 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
   const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
-  const bool guides = known >= first_input + guide_input && known < stored_count;
+  const bool guides = is_guide_rate(known);
   if (guides && !w.setup.steered()) return true;
   Pass pass;
   for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);

@@ -69,10 +69,10 @@ struct Wheel {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
-// Whether a variable is a rate of a carrier that does not turn.
+// (variable) => whether it is a rate of a carrier, and one that does not turn
+inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
 inline bool is_idle(const Wheel& wheel, unsigned variable) {
-  const bool guides = variable >= variable::psi_dot_guide && variable < stored_count;
-  return guides && is_running(wheel.run.phase) && !wheel.setup.steered();
+  return is_guide_rate(variable) && is_running(wheel.run.phase) && !wheel.setup.steered();
 }
 
 // (run.t) => state there, in run.y
