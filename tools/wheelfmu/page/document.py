@@ -69,9 +69,9 @@ def encoded(body: Body) -> dict:
 
 
 def colours() -> dict[str, dict[str, str]]:
-    """{quantity or state: {light, dark}}, those of all pictures."""
+    """{colour, quantity or state: {light, dark}}, those of all pictures."""
     found = json.loads((ROOT / "tools" / "wheelfmu" / "diagrams" / "colours.json").read_text(encoding="utf-8"))
-    return {name: found["palette"][tone] for name, tone in found["quantities"].items()}
+    return found["palette"] | {name: found["palette"][tone] for name, tone in found["quantities"].items()}
 
 
 def moving_wheels() -> dict[str, dict]:

@@ -83,50 +83,34 @@ function webm({width, height}, pictures, duration) {
   return new Blob([header, segment], {type: 'video/webm'});
 }
 
-/** A canvas encoded by WebCodecs: {add(k), end(), pictures}. */
-function streamOf(canvas) {
-  const {width, height} = canvas;
-  const pictures = [];
+/**
+ * A video of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
+ * draw. left(seconds): called before each picture with the time that the rest will take; false ends it.
+ */
+export async function film(page, left) {
+  const {start, end, speed, t} = page.player;
+  const [canvas, pictures] = [make('canvas'), []];
   const output = (chunk) => {
     const data = new Uint8Array(chunk.byteLength);
     chunk.copyTo(data);
     pictures.push({data, time: Math.round(chunk.timestamp / 1000), key: chunk.type === 'key'});
   };
   const encoder = new VideoEncoder({output, error: console.error});
-  encoder.configure({codec: CODEC, width, height, bitrate: BITS, framerate: RATE});
-  const add = (k) => {
-    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
-    encoder.encode(picture, {keyFrame: k % KEY === 0});
-    picture.close();
-  };
-  return {add, end: () => encoder.flush(), pictures};
-}
-
-/**
- * A video of the motion from its start to its end at the speed of the clock, as a Blob, however long a picture takes to
- * draw. left(seconds): called before each picture with the time that the rest will take; false ends it.
- */
-export async function film(page, left) {
-  const {player, stage} = page;
-  const {start, end, speed, t} = player;
-  const canvas = make('canvas');
-  const show = (instant) => {
-    player.seek(instant);
-    page.draw();
-    compose(page, canvas);
-  };
-  player.pause();
-  show(start);
-  const {add, end: finish, pictures} = streamOf(canvas);
+  page.player.pause();
   const count = Math.floor((end - start) / speed * RATE) + 1;
   const begin = performance.now();
   let k = 0;
   for (; k < count && left((performance.now() - begin) / 1000 / k * (count - k)); ++k) {
-    show(start + k * speed / RATE);
-    add(k);
+    page.player.seek(start + k * speed / RATE);
+    page.draw();
+    const {width, height} = compose(page, canvas);
+    if (k === 0) encoder.configure({codec: CODEC, width, height, bitrate: BITS, framerate: RATE});
+    const picture = new VideoFrame(canvas, {timestamp: Math.round(1e6 * k / RATE)});
+    encoder.encode(picture, {keyFrame: k % KEY === 0});
+    picture.close();
     await new Promise((next) => setTimeout(next));  // the page stays alive
   }
-  player.seek(t);
-  await finish();
+  page.player.seek(t);
+  await encoder.flush();
   return webm(canvas, pictures, 1000 * k / RATE);
 }
