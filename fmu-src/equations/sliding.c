@@ -14,6 +14,8 @@ typedef struct Action {
   double brake;    /* N m */
 } Action;
 
+static const Action none = {.brake = 0};
+
 /* One state under a load. */
 typedef struct Body {
   Frame frame;
@@ -106,7 +108,6 @@ static inline Motion slide(const WheelParameters* w, const Body* b, double d_x, 
 
 /* (direction chi of the slip) => N, room, growth, turn, settling */
 static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
-  static const Action none = {.brake = 0};
   double d_x = cos(chi), d_y = sin(chi), room = room_of(b, d_x, d_y);
   Motion m = slide(w, b, d_x, d_y);
   double N = m.a.N, N_turn = b->mu * N * (b->g_x * d_y - b->g_y * d_x) / room; /* dN/d(chi) */
@@ -163,7 +164,6 @@ static double search_direction(const WheelParameters* w, const Body* b, double a
 
 /* In ever smaller parts, since a zero where the turning rises may lie close by; not so without friction. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
-  static const Action none = {.brake = 0};
   const double rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
   Body b = body_of(scene, reduced, scene->guided);

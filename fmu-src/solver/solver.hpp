@@ -64,7 +64,6 @@ class Solver {
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
   int event() const { return problem_.watched[fallen_].event; }
-  Method method() const { return method_; }
   const char* failure() const { return failure_ ? failure_ : engine().failure(); }
   const Counters& counters() const { return counters_; }
 

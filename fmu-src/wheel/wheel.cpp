@@ -58,7 +58,6 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   Run& run = w.run;
   run = Run();
   run.phase = Phase::faulty;
-  w.orbit.leave();
   w.demand.slides = w.demand.parameters[variable::mu_slide] > 0;
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
