@@ -18,9 +18,8 @@ from wheelfmu.fmu.driver import ERROR, OK, STATES, Value, shifted
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
-from wheelfmu.truth.reference import Wheel
-from wheelfmu.truth.reference.carried import Carried, Piece
-from wheelfmu.truth.scenes import GENERAL
+from wheelfmu.truth.reference.carried import Piece
+from wheelfmu.truth.scenes import GENERAL, carried
 from wheelfmu.truth.schedule import Schedule
 from wheelfmu.truth.sliding import SLIDES, UPRIGHT
 
@@ -257,23 +256,13 @@ SURFACES: dict[str, tuple[dict[str, float], dict]] = {
 }
 surfaces = pytest.mark.parametrize(("start", "loads"), SURFACES.values(), ids=SURFACES)
 courses = pytest.mark.parametrize("course", [((0.0,), (0.0,)), (STEER, LEAN)], ids=["held", "steers and leans"])
-CONSTANTS = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
-
-
-def carried(start: dict[str, float]) -> Carried:
-    wheel = Wheel(**{name: start[name] for name in CONSTANTS if name in start})
-    angles = {name: start[f"{name}_start"] for name in ("psi", "theta", "phi", "phi_dot") if f"{name}_start" in start}
-    slip = (start.get("slip_x_start", 0.0), start.get("slip_y_start", 0.0))
-    road = (start.get("slope", 0.0), start.get("slope_direction", 0.0))
-    grip = {"mu_max": start.get("mu_max", np.inf), "mu_slide": start.get("mu_slide", 0.0), "slip": slip}
-    return Carried(wheel, **angles, **grip, road=road, omega_s=start.get("omega_s", 0.0))
 
 
 @courses
 @surfaces
 def test_it_moves_as_a_rotation_matrix_in_fixed_axes_by_both_formulations(library: Library, course, start, loads):
     times, pieces = np.linspace(0, 1, 6), [Piece(0.0, 1.0, *course, loads)]
-    want = carried(start).run(pieces, times)
+    want, _ = carried({**UPRIGHT, **start}, pieces, times)
 
     def apart(found: Run, expected: dict[str, np.ndarray] | Run) -> dict[str, float]:
         return {name: absolute_error(found[name], expected[name]) for name in READ}
@@ -297,10 +286,9 @@ def test_it_slides_out_grips_and_stands_as_the_reference_does(library: Library) 
     turn = {"M_brake": (0.0,)}
     pieces = [Piece(0.0, 0.8, (0.0, 0.5), (0.0, 0.2), turn), Piece(0.8, 2.0, (0.4, -0.4), (0.16, -0.15), turn)]
     times = [0.0, 0.5, 0.7, 0.9, 1.5, 2.0]
-    reference = carried(start)
-    want = reference.run(pieces, times)
-    assert [name for _, name in reference.transitions] == ["grip", "slip"]
-    slide, end = (t for t, _ in reference.transitions)
+    want, transitions = carried({**UPRIGHT, **start}, pieces, times)
+    assert [name for _, name in transitions] == ["grip", "slip"]
+    slide, end = (t for t, _ in transitions)
     for formulation in (2, 3):
         run = driven(library, pieces, times, **start, formulation=formulation)
         within({name: absolute_error(run[name], want[name]) for name in READ}, 2e-7, "apart, SI")  # a slip begins
@@ -354,7 +342,7 @@ def test_a_jump_of_the_rates_is_the_limit_of_ever_steeper_ramps(library: Library
         pieces = [Piece(0.0, 1e-3, (0.0,), (0.0,))]
         pieces += [Piece(1e-3, 1e-3 + 1e-7, (0.0, JUMPS[jump][1][0] / 1e-7), (0.0, theta_dot / 1e-7))]
         pieces += [Piece(1e-3 + 1e-7, AFTER, (JUMPS[jump][1][0],), (theta_dot,))]
-        found = carried(start).run(pieces, [0.0, AFTER])
+        found, _ = carried({**UPRIGHT, **start}, pieces, [0.0, AFTER])
         within({name: abs(found[name][-1] - value) for name, value in want.items()}, 2e-5, "apart, SI")
         return
 

@@ -91,7 +91,6 @@ VANISHING = {
 }
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 @pytest.mark.parametrize("scene", VANISHING)
 def test_a_regularized_law_is_solved_where_it_has_no_moment(library: Library, scene: str, formulation: int) -> None:
     start, s, inputs, since, expected = VANISHING[scene]

@@ -244,7 +244,6 @@ def test_inputs_that_change_at_every_step_of_a_slide_cost_a_short_step_each(libr
 # ---- hard scenes ----
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 def test_a_start_in_which_the_wheel_jams_is_rejected_and_has_no_forces(library: Library, formulation: int) -> None:
     """With the slip that is set, and with that which the loads begin; without a jam the ground presses."""
     jams = {"J_x": 0.1, "J_y": 0.1, "J_z": 0.1, "theta_start": 1.0, "slip_y_start": -0.5, "formulation": formulation}
@@ -265,7 +264,6 @@ def test_a_start_in_which_the_wheel_jams_is_rejected_and_has_no_forces(library: 
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
-@pytest.mark.parametrize("formulation", [2, 3])
 def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float, formulation: int) -> None:
     """Friction of 4 against a fast slip across: the normal force grows as the inverse root of the time left."""
     scene = Scene({"mu_max": 5.0, "mu_slide": 4.0, "theta_start": 2.0, "slip_y_start": -10.0}, 0.4)
@@ -283,7 +281,6 @@ JAMMED |= {"psi_dot_start": 1.6849, "theta_dot_start": 0.78322, "phi_dot_start":
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
-@pytest.mark.parametrize("formulation", [2, 3])
 def test_a_slide_that_cannot_but_begin_in_a_jam_ends_there(
     library: Library, tolerance: float, formulation: int
 ) -> None:
@@ -347,7 +344,6 @@ def test_a_locked_wheel_slides_over_roads_that_change_with_the_deceleration_of_e
     within(absolute_error(slowing, [0.4, 0.1, 0.4, 0.15, *hill]), 4096 * EPSILON, "deceleration over g")
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 def test_a_slip_that_begins_where_the_ground_pulls_keeps_its_direction(library: Library, formulation: int) -> None:
     """Without a force of the road it begins along the acceleration of the contact."""
     fast = {"theta_start": 2.0, "psi_dot_start": -3.0, "theta_dot_start": 14.0, "phi_dot_start": 15.5}

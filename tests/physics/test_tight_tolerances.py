@@ -65,7 +65,6 @@ BEGINS = {  # on a wheel carrier: the motion amplifies no error
 }
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 @pytest.mark.parametrize("name", BEGINS)
 def test_the_error_of_a_slide_falls_with_the_tolerance(library: Library, name: str, formulation: int) -> None:
     start, inputs = BEGINS[name]
@@ -79,7 +78,6 @@ def test_the_error_of_a_slide_falls_with_the_tolerance(library: Library, name: s
         within({name: error / tolerance for name, error in errors.items()}, 0.3, "error / range over the tolerance")
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_a_locked_wheel_that_slides_exactly_upright_stays_so(library, tolerance: float, formulation: int) -> None:
     """Up to the rounding that the upright wheel's instability amplifies."""
@@ -120,7 +118,6 @@ def test_the_slips_of_a_light_body_that_fall_at_many_g_end(library: Library, tol
     beyond(abs(lean(tolerance, -0.566) - lean(1e-10)), 1e-8, "lean after another start, rad")
 
 
-@pytest.mark.parametrize("formulation", [2, 3])
 def test_slips_of_random_wheels_end_at_the_tightest_tolerances(library: Library, formulation: int) -> None:
     """3 s under loads that go on."""
     random, slides = np.random.default_rng(4), 0

@@ -3,14 +3,16 @@
 Every scene can be given to the FMU (start values, inputs) and to the independent reference (wheel, motion, inputs).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from math import inf, pi, sin
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from wheelfmu.fmu.driver import Values
 from wheelfmu.truth.reference import Road, Solution, Start, Wheel, solve
+from wheelfmu.truth.reference.carried import Carried, Piece
 
 from .kept import kept
 from .schedule import Schedule
@@ -69,6 +71,17 @@ class Scene(Started):
     start: Values = field(default_factory=dict)
     duration: float = 10.0
     inputs: Schedule = Schedule()
+
+
+def carried(start: Values, pieces: Sequence[Piece], times: Sequence[float]) -> tuple[dict[str, NDArray], list]:
+    """On a carrier that leads the axle piece by piece: columns, and the transitions, by its own reference."""
+    scene, omega_s = Scene(start), float(start.get("omega_s", 0))
+
+    def solved() -> tuple[dict[str, NDArray], list]:
+        one = Carried(scene.wheel, scene.motion, scene.road, omega_s)
+        return one.run(pieces, times), one.transitions
+
+    return kept(("carried", scene.wheel, scene.motion, scene.road, omega_s, pieces, [*map(float, times)]), solved)
 
 
 GENERAL = {"J_x": 0.7, "J_y": 1.2, "J_z": 1.8}

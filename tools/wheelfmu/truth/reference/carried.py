@@ -21,8 +21,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyint, polyval
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
-from .model import Wheel
+from .model import Road, Start, Wheel
 
 Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
@@ -70,20 +71,17 @@ class Margin:
 
 @dataclass
 class Carried:
-    """One wheel. `mu_slide` 0: it never slides. `omega_s`: width of a regularized law; 0: the exact one."""
+    """One wheel, which starts at `at` but for the rates of its axle. `omega_s`: width of a regularized law, or 0."""
 
     wheel: Wheel
-    psi: float = 0.0
-    theta: float = np.pi / 2
-    phi: float = 0.0
-    phi_dot: float = 0.0
-    mu_max: float = np.inf
-    mu_slide: float = 0.0
-    slip: tuple[float, float] = (0.0, 0.0)  # m/s, at the start: along e1, and to the left
-    road: tuple[float, float] = (0.0, 0.0)  # rad: slope, and the direction uphill
+    at: Start
+    road: Road
     omega_s: float = 0.0
     rtol: float = 1e-12
     transitions: list[tuple[float, str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.psi, self.theta = self.at.psi, self.at.theta  # at the begin of the piece
 
     # ---- the course of the axle ----
 
@@ -132,7 +130,8 @@ class Carried:
         c, c1 = self.contact(a, a1)
         E = self.carrier_axes(a)
         load = {name: float(polyval(t - piece.begin, np.asarray(row, float))) for name, row in piece.loads.items()}
-        F = np.array([load.get(name, 0.0) for name in ("F_X", "F_Y", "F_Z")]) + self.weight()
+        weight = self.wheel.m * np.array(self.wheel.gravity)
+        F = weight + [load.get(name, 0.0) for name in ("F_X", "F_Y", "F_Z")]
         M = E @ [load.get(name, 0.0) for name in ("M_1", "M_2", "M_3")]
         brake = max(load.get("M_brake", 0.0), 0.0)
         inertia = R @ np.diag([self.wheel.J_x, self.wheel.J_y, self.wheel.J_z]) @ R.T
@@ -148,7 +147,7 @@ class Carried:
             u = y[VELOCITY] + np.cross(w, c)
             d = u[:2] / np.linalg.norm(u[:2])
             K[8:10], right[8:10] = 0, 0
-            K[8:10, 6:8], K[8:10, 8] = np.eye(2), self.mu_slide * d
+            K[8:10, 6:8], K[8:10, 8] = np.eye(2), self.road.mu_slide * d
         if sign == 0 and self.rubs(piece):  # held: w' along the axle is zero
             K[11, 3:6] = a
         else:
@@ -162,11 +161,6 @@ class Carried:
     def rubs(self, piece: Piece) -> bool:
         """The exact law holds it, or not."""
         return not self.omega_s and (self.wheel.s > 0 or "M_brake" in piece.loads)
-
-    def weight(self) -> Array:
-        slope, uphill = self.road
-        along = -np.sin(slope)
-        return self.wheel.m * self.wheel.g * np.array([along * np.cos(uphill), along * np.sin(uphill), -np.cos(slope)])
 
     def rate(self, piece: Piece, mode: tuple[str, int]) -> Callable[[float, Array], Array]:
         def rates(t: float, y: Array) -> Array:
@@ -193,7 +187,7 @@ class Carried:
 
         def grip(t: float, y: Array) -> float:
             x, z, N = self.solve(piece, mode, t, y).force / (self.wheel.m * self.wheel.g)
-            return self.mu_max**2 * N * abs(N) - x * x - z * z
+            return self.road.mu_max**2 * N * abs(N) - x * x - z * z
 
         def slip(t: float, y: Array) -> float:
             """Falls through zero where the slip turns back."""
@@ -204,7 +198,7 @@ class Carried:
             found["spin" if sign else "held"] = spin if sign else reserve
         if contact == "slides":
             found["slip"] = slip
-        elif self.mu_max < np.inf:
+        elif self.road.mu_max < np.inf:
             found["grip"] = grip
         return found
 
@@ -224,21 +218,20 @@ class Carried:
         a, a1, _ = self.axle(piece, piece.begin)
         (p, p1, _), (q, q1, _) = self.angles(piece, piece.begin)
         E = self.carrier_axes(a)
-        w = np.cross(a, a1) + a * (self.phi_dot + p1 * np.cos(q))
+        w = np.cross(a, a1) + a * (self.at.phi_dot + p1 * np.cos(q))
         c, _ = self.contact(a, a1)
         left = np.array([-np.sin(p), np.cos(p), 0.0])
         y = np.zeros(STATES)
         y[POSITION] = [0, 0, self.wheel.r_0 * np.sin(q) + self.wheel.r]
-        y[VELOCITY] = -np.cross(w, c) + self.slip[0] * E[:, 0] + self.slip[1] * left
+        y[VELOCITY] = -np.cross(w, c) + self.road.slip[0] * E[:, 0] + self.road.slip[1] * left
         y[SPIN] = w
-        spun = np.array([[np.cos(self.phi), -np.sin(self.phi), 0], [np.sin(self.phi), np.cos(self.phi), 0], [0, 0, 1]])
-        y[TURN] = (E @ spun).ravel()
-        y[PHI] = self.phi
+        y[TURN] = (E @ Rotation.from_euler("z", self.at.phi).as_matrix()).ravel()
+        y[PHI] = self.at.phi
         return y
 
     def run(self, pieces: Sequence[Piece], times: Sequence[float]) -> dict[str, Array]:
         """Columns by the FMU's names at `times`, from the left at the end of a piece."""
-        y, contact = self.start(pieces[0]), "slides" if any(self.slip) else "grips"
+        y, contact = self.start(pieces[0]), "slides" if any(self.road.slip) else "grips"
         rows: list[tuple[float, dict[str, float]]] = []
         stopped = False
         for piece in pieces:
