@@ -23,7 +23,6 @@ def main(given: Namespace) -> int:
     from wheelfmu.page.__main__ import live, said
     from wheelfmu.release import compiling
 
-    if not (ROOT / "build" / "wasm").exists():
-        print("Compiling the wheel to WebAssembly; the first time takes about a minute.", flush=True)
-    wasm = compiling.wasm(ROOT / "build" / "wasm", "wheel_page")
-    return said(lambda: live(wasm, given.file, overwrite=given.overwrite))
+    folder = ROOT / "build" / "wasm"
+    compiling.build(folder, compiling.WASM, "wheel_page")
+    return said(lambda: live(folder / "wheel_page.wasm", given.file, overwrite=given.overwrite))

@@ -9,11 +9,11 @@ if all passed. A fresh checkout takes about a quarter of an hour on two cores.
 import os
 import platform
 import sys
-import time
 from argparse import Namespace
 from subprocess import STDOUT, check_output
 
 from wheelfmu.commands import processes
+from wheelfmu.fmu.outputs import step
 from wheelfmu.fmu.paths import ROOT
 
 OPTIONS = {"quick": {"nargs": "?", "choices": ["quick"], "help": "see above"}}
@@ -22,16 +22,11 @@ CORE = [
     for name in ["contract", "equations", "exchange", "orbit", "physics", "reference", "robustness", "solver"]
 ]
 RELEASE = processes.command("build", "release", "-DCMAKE_COMPILE_WARNING_AS_ERROR=ON")
-BEGIN = time.monotonic()
 
 
 def needs(given: Namespace) -> list[str]:
     """Everything that any step needs is installed before the first."""
     return ["check" if given.quick else "test"]
-
-
-def step(text: str) -> None:
-    print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
 
 
 def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = "release", **env: str) -> None:

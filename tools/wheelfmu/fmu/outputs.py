@@ -7,12 +7,15 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 
 from wheelfmu.fmu.values import Fault
+
+BEGIN = time.monotonic()
 
 
 def check(
@@ -53,6 +56,11 @@ def alone(place: Path) -> Iterator[None]:
             print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
             fcntl.flock(file, fcntl.LOCK_EX)
         yield
+
+
+def step(text: str) -> None:
+    """A line above what a long command does next, with the seconds since it began."""
+    print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
 
 
 def deliver(source: Path, target: Path) -> None:

@@ -8,19 +8,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from wheelfmu.fmu.outputs import step
 from wheelfmu.publishing.markdown import ROOT, page, said
 from wheelfmu.release import compiling, fmu, folder, libraries, platforms
 
-BEGIN = time.monotonic()
 OUT = ROOT / "build" / "wheel-release"
 REPORT = ROOT / "docs" / "results" / "platforms.md"
-
-
-def step(text: str) -> None:
-    print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
 
 
 def build_elsewhere(first: Path, scratch: Path) -> str:

@@ -36,10 +36,3 @@ def build(
     }
     given = [f"-D{name}={value}" for name, value in options.items()]
     building.build(platform, out, sources, ["-Wno-dev", *given], [out, "--target", target], f"={program}\n")
-
-
-def wasm(folder: Path, made: str) -> Path:
-    """A module in a build folder, made anew only where a source has changed: wheel_page, of the live page, or
-    wheel_driver, the release's scenes."""
-    build(folder, WASM, made)
-    return folder / f"{made}.wasm"
