@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 
-from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
+from wheelfmu.fmu.driver import COUNTERS, ERROR, OK, FMU2Wheel
 from wheelfmu.truth.scenes import KINDS, SCENES
-from wheelfmu.truth.sliding import ROAD, THROWN
+from wheelfmu.truth.sliding import ROAD, SLIDES, THROWN
 
 SECONDS = [float(t) for t in range(1, 11)]
+SCENES_AND_SLIDES = KINDS | {name: SLIDES[name].start for name in ("thrown", "thin disc", "regularized")}
 
 
 @pytest.mark.parametrize("scene", KINDS)
@@ -65,12 +66,21 @@ def test_steps_with_rounding_in_them_are_taken(wheel):
     within(abs(summing.get("theta")[0] - theta), 512 * EPSILON, "theta at the sum of the steps, rad")  # 2e-14 s early
 
 
-def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel):
-    times = np.arange(1, 41) * 0.125
-    late = wheel().start(start=1e9, s=0.03)
-    assert late.run(1e9 + times) == wheel().start(s=0.03).run(times)
-    assert late.ask("DoStep", 1e9 + 4.875, 0.125, 1) == ERROR  # the partner: a repeated step is noticed
-    assert late.said() == "fmi2DoStep from 1000000004.875 s: the FMU has reached 1000000005 s."
+def instants(w: FMU2Wheel) -> np.ndarray:
+    return np.array([float(text.split()[2]) for text in w.sentences if text.startswith("t = ")])
+
+
+@pytest.mark.parametrize("scene", SCENES_AND_SLIDES)
+@pytest.mark.parametrize("start", [-1e9, 1e9])
+def test_a_start_time_of_a_billion_seconds_costs_no_bit(wheel, scene, start):
+    """Nor do logged instants move, but for their rounding."""
+    times, values = np.arange(1, 17) * 0.125, SCENES_AND_SLIDES[scene]
+    late, early = wheel(logging=True).start(start=start, **values), wheel(logging=True).start(**values)
+    assert late.run(start + times) == early.run(times)
+    assert len(instants(late)) == len(instants(early))
+    within(np.abs(instants(late) - start - instants(early)).max(initial=0), 2.5e-7, "instants apart, s")
+    assert late.ask("DoStep", start + 1.875, 0.125, 1) == ERROR  # the partner: a repeated step is noticed
+    assert "the FMU has reached" in late.sentences[-1]
 
 
 NO_SENSE = [(t, h, "times must be finite") for t, h in ((0.5, -0.1), (0.5, np.nan), (np.nan, 0.1), (0.5, np.inf))]

@@ -17,7 +17,7 @@ import pytest
 from lxml import etree
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
-from wheelfmu.fmu.paths import ROOT, copy_checkout
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.publishing import variables
 from wheelfmu.publishing.markdown import pages, with_figures
 
@@ -153,14 +153,6 @@ PARTS = {"page": PAGE, "view": PAGE, "study": "examples/studies", "example": "ex
 SCRIPTS = sorted(p.name for p in (ROOT / "scripts").iterdir() if (ROOT / PARTS.get(p.name, ".")).exists())
 WRONG = {"build": "faster", "example": "car m_B=-1", "fuzz": "soon", "lint": "--fixx", "page": "--output"}
 WRONG |= {"report": "sped", "run": "m=-5", "setup": "tests", "study": "--varies", "test": "slow", "view": "no_file.csv"}
-
-
-@pytest.fixture(scope="module")
-def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A fresh one, where nothing is built or installed."""
-    place = tmp_path_factory.mktemp("checkout")
-    copy_checkout(place)
-    return place
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

@@ -12,13 +12,6 @@ import pytest
 from wheelfmu.fmu.paths import copy_checkout
 
 
-@pytest.fixture(scope="module")
-def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("set-up")
-    copy_checkout(place)
-    return place
-
-
 def refused(command: list[str | Path], folder: Path, **variables: str) -> str:
     """The only line that a command prints before it fails."""
     done = subprocess.run(command, cwd=folder, env=os.environ | variables, capture_output=True, text=True, check=False)
