@@ -1,18 +1,19 @@
 """Ctrl-C on a terminal ends a command and all that it has started, with status 130 and without a false word."""
 
 import os
-import pty
-import select
 import time
+from io import StringIO
 from pathlib import Path
 
+import pexpect
+import psutil
 import pytest
 
 from wheelfmu.fmu.paths import ROOT
 
 MARK = "WHEEL_TEST_OF_INTERRUPTS"
 COMMANDS = {
-    "run": ("Built preset release.", 0.0, 0.4, 1.5, 3.0),
+    "run": ("Built preset release.", 0.05, 0.4, 1.5, 3.0),
     "study fates --overwrite --out {place}/z": ("", 3.0),
     "page {place}/page.html": ("", 1.5),
     "test quick": ("the release build", 2.0),
@@ -21,50 +22,31 @@ COMMANDS = {
 CASES = [(line, words, delay) for line, (words, *delays) in COMMANDS.items() for delay in delays]
 
 
-def marked(mark: str) -> list[int]:
+def marked(mark: str) -> list[psutil.Process]:
     """Processes that have the mark in their environment."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            if f"{MARK}={mark}".encode() in entry.read_bytes() and "Z" not in stat_of(entry.parent):
-                found.append(int(entry.parent.name))
-        except OSError:  # it has ended, or is not ours
-            continue
-    return found
+    found = psutil.process_iter(["environ", "status"])  # none of the environment of those that are not ours
+    own = [one for one in found if (one.info["environ"] or {}).get(MARK) == mark]
+    return [one for one in own if one.info["status"] != psutil.STATUS_ZOMBIE]
 
 
-def stat_of(process: Path) -> str:
-    return (process / "stat").read_text(errors="replace").rpartition(")")[2].split()[0]
-
-
-def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[int, str, float]:
+def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[int | None, str, float]:
     """Runs a command on a terminal; `delay` after it prints `until`, or starts its own program, comes Ctrl-C.
 
     Its exit status, what it printed, and how long it took to end."""
-    pid, terminal = pty.fork()
-    if not pid:
-        os.environ[MARK] = mark
-        os.execv(words[0], words)
-    printed, due, give_up = "", None, time.monotonic() + 600
-    while time.monotonic() < give_up:
-        ready, _, _ = select.select([terminal], [], [], 0.05)
-        try:
-            printed += os.read(terminal, 65536).decode(errors="replace") if ready else ""
-        except OSError:  # the other end is closed
-            break
-        if due is None and (until in printed if until else running(pid)):
-            due = time.monotonic() + delay
-        if due and time.monotonic() > due:
-            os.write(terminal, b"\x03")
-            begin, due = time.monotonic(), float("inf")
-    _, status = os.waitpid(pid, 0)
-    os.close(terminal)
-    return os.waitstatus_to_exitcode(status), printed, time.monotonic() - begin
-
-
-def running(pid: int) -> bool:
-    """Whether set-up has given its place to the command."""
-    return b"-m\0wheelfmu" in (Path("/proc") / str(pid) / "cmdline").read_bytes()
+    printed = StringIO()
+    child = pexpect.spawn(words[0], words[1:], env=os.environ | {MARK: mark}, timeout=600, encoding="utf-8")
+    child.logfile_read = printed
+    if until:
+        child.expect_exact(until)
+    else:
+        while "wheelfmu" not in psutil.Process(child.pid).cmdline():  # set-up gives its place to the command
+            time.sleep(0.05)
+    child.expect([pexpect.EOF, pexpect.TIMEOUT], timeout=delay)
+    child.sendintr()
+    begin = time.monotonic()
+    child.expect(pexpect.EOF)
+    child.wait()
+    return child.exitstatus, printed.getvalue(), time.monotonic() - begin
 
 
 def unfinished() -> set[str]:
