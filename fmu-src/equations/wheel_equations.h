@@ -4,7 +4,7 @@
  * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
- *   multibody  the paper's system (24); unknowns q and q_dot, constraints in accelerations; 12 states
+ *   multibody  the paper's system (24); unknowns q and q_dot, constraints on accelerations; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
  * Each takes a wheel on a wheel carrier too, which directs the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.

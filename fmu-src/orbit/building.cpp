@@ -1,5 +1,5 @@
 // Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
-// form, carrier frame; path of O in fixed axes as X_O + i Y_O.
+// form, non-spinning frame; path of O in fixed axes as X_O + i Y_O.
 #include "orbit.hpp"
 
 #include <algorithm>

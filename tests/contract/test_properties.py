@@ -55,7 +55,7 @@ def smooth_pieces(w: FMU2Wheel, ends: np.ndarray) -> list[float]:
 def energy_defect(w: FMU2Wheel, counted: dict[str, float], pieces: int = 8, width: float = 1 / 32) -> float:
     """|change of E - work of the loads and of the smooth friction| over the size of what moves; quadrature of power.
 
-    P = F v + M omega (carrier axes) - s N tanh(omega_z / omega_s) omega_z, by six Gauss nodes a piece.
+    P = F v + M omega (non-spinning axes) - s N tanh(omega_z / omega_s) omega_z, by six Gauss nodes a piece.
     """
     first = w.get("E")[0]
     work = moved = 0.0

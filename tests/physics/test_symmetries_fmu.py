@@ -1,6 +1,6 @@
 """What the plane, the wheel, the units and the direction of time leave unchanged, over whole motions of the FMU.
 
-Friction and inputs are on unless said. Fixed axes for places and forces, carrier axes for moments.
+Friction and inputs are on unless said. Fixed axes for places and forces, non-spinning axes for moments.
 """
 
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 // What the diagrams show: curves over time, of which a scene has those that belong to it, and portraits: the phase
-// portrait, the angular velocity along the carrier axes e2 and e3, or the path of the contact point from above.
+// portrait, the angular velocity along e2 and e3, or the path of the contact point from above.
 import {DEGREES} from '#dom';
 import {criticalSpin} from '#mechanics';
 import {contactOf, extent} from '#table';

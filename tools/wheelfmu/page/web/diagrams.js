@@ -1,5 +1,5 @@
 // All diagrams: the curves over time, and beside them one portrait, chosen by its buttons: the phase portrait, the
-// angular velocity along the carrier axes e2 and e3, or the path of the contact point from above. They share the clock,
+// angular velocity along e2 and e3, or the path of the contact point from above. They share the clock,
 // and keep their axes while the reader pushes the wheel. The future is drawn faintly. Angles in degrees, all else SI.
 import {CURVES, PORTRAITS} from '#curves';
 import {clearCanvas, colour, fixed, make, makeChoice, subscripted, write} from '#dom';

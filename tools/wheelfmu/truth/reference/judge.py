@@ -1,7 +1,7 @@
 """How far a solution is from a table, from the contact, and from the laws of mechanics: 0 for the exact motion.
 
-Momentum and angular momentum are written with the Euler angles and the carrier axes of the outputs: nothing in them is
-shared with the equations that are judged. Fixed axes unless said.
+Momentum and angular momentum are written with the Euler angles and the non-spinning axes of the outputs: nothing in
+them is shared with the equations that are judged. Fixed axes unless said.
 """
 
 import numpy as np

@@ -61,7 +61,7 @@ class Start:
 class Inputs:
     """External load besides the weight.
 
-    force: (F_X, F_Y, F_Z) at O in fixed axes, N.  moment: (M_1, M_2, M_3) along the carrier axes
+    force: (F_X, F_Y, F_Z) at O in fixed axes, N.  moment: (M_1, M_2, M_3) along the non-spinning axes
     e1 (line of nodes), e2 (up the slope), e3 (axle), N.m.  brake: capacity of a dry brake about the axle, N.m, >= 0.
     jumps: instants at which one of them jumps or has a kink; all are read as continuous from the right.
     """
