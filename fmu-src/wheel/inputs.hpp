@@ -2,8 +2,8 @@
 // weight, the brake, and how the wheel carrier of a guided wheel turns.
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along e1, e2, e3; M_brake [N m], the capacity of the
-// dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `guide`. What the caller asks for is in
-// force from the next step on.
+// dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `guide`. What the caller asks for is
+// in force from the next step on.
 #pragma once
 
 #include "wheel_equations.h"
