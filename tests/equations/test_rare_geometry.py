@@ -187,7 +187,7 @@ def test_the_wheel_jams_from_the_coefficient_on_that_leaves_a_hundred_thousandth
         limit = (1 - 1e-5) / (1 - state.least_room) * state.mu
         y = eq.start_each(form, state.scene, slipping(state))
         jams = []
-        for share in (1 - 2e-6, 1 + 2e-6):
+        for share in (1 - 3e-7, 1 + 3e-7):
             scene = state.scene.copy()
             scene["mu_slide"] = limit * share
             jams.append(bool(np.isinf(eq.derivative_each(form, scene, y)[1][0])))

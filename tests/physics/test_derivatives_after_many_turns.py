@@ -123,3 +123,35 @@ def test_the_direction_of_the_slope_after_many_turns_is_read_as_it_was_set_and_h
         ends = [np.array(near.put(slope_direction=home(far) + h).get("lambda_1", "lambda_2")) for h in (1e-4, -1e-4)]
         within(np.abs(found - (ends[0] - ends[1]) / 2e-4).max(), 1e-6, "derivative off the quotient, N")
         beyond(np.abs(found).max(), 10.0, "derivative, N")
+
+
+LEFT_ALONE: dict[str, tuple[Values, tuple[str, ...]]] = {
+    "a free wheel": ({"psi_dot_start": 0.7, "phi_dot_start": -6.0}, ("lambda_1", "lambda_2", "X_C", "v_x", "lambda_y")),
+    "a guided wheel": (
+        {**GENERAL, "guided": True, "theta_start": 1.2, "phi_dot_start": -6.0},
+        ("M_guide_1", "M_guide_2"),
+    ),
+}
+STEER = {"psi_dot_guide": (0.4, 0.5), "theta_dot_guide": (-0.2, 0.3)}
+PUSH = {"F_X": (-3.0, 5.0), "F_Y": (4.0, -7.0), "M_2": (0.5, 2.0)}
+
+
+@pytest.mark.parametrize("case", LEFT_ALONE)
+def test_rates_after_turns_that_the_motion_itself_has_made_are_those_of_a_start_at_home(wheel, case):
+    """After hundreds of years; where a load or a carrier begins to act."""
+    values, names = LEFT_ALONE[case]
+    shapes = STEER if "guided" in case else PUSH
+    far = wheel().start(**values).to(1e10)
+    angles = far.get("psi", "phi")
+    beyond(max(map(abs, angles)), 1e9, "angle, rad")
+    rates = ("theta_dot", "psi_dot", "phi_dot")
+    start = {f"{name}_start": far.get(name)[0] for name in ("theta", *rates)}
+    found = np.array(far.give(shapes).rates(names)())
+
+    def near(turn: float) -> Array:
+        own = {**values, **start, "psi_start": home(angles[0]) + turn, "phi_start": home(angles[1]) + turn}
+        return np.array(wheel().start(**own).give(shapes).rates(names)())
+
+    size = np.abs(near(0.0)).max()
+    within(np.abs(found - near(0.0)).max() / size, 3e-5, "rates off those at home, relative")  # of angles of 1e-5 rad
+    beyond(np.abs(near(1e-3) - near(0.0)).max() / size, 1e-4, "rates at another angle, relative")
