@@ -49,7 +49,7 @@ double short_of_line(const Setup& setup, const InForce&, double, const double* y
 # In front of what a new variable, member, assignment, name, function and row stand.
 PLACES = {
     "modelDescription.xml": ['    <ScalarVariable name="F_X"'],
-    "fmu-src/wheel/setup.hpp": ["};\n\nSetup setup_of("],
+    "fmu-src/wheel/setup.hpp": ["};\n\n// (parameters, tolerance, kind) => setup"],
     "fmu-src/wheel/setup.cpp": ["  return setup;\n}\n\nvoid scales_at"],
     "fmu-src/wheel/run.hpp": ["  count\n};"],
     "fmu-src/wheel/events.cpp": [
