@@ -39,7 +39,6 @@ export function setUpFates(live) {
     live.start({...at(column, row, criticalSpin(live.parameters())), psi_dot_start: 0});
   };
   canvas.onpointerdown = canvas.onpointermove;
-  canvas.onpointerleave = () => (before = '');
   const draw = (spin) => {
     size = [canvas.clientWidth, canvas.clientHeight];
     const pen = clearCanvas(canvas, ...size);
