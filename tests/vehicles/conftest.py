@@ -11,7 +11,7 @@ from wheelfmu.vehicles.vehicle import Fmus, Table, build_all
 
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> Fmus:
-    """wheel, the FMUs compiled from C++, and balance (made by pythonfmu)."""
+    """wheel, and the FMUs compiled from C++."""
     return build_all(tmp_path_factory.mktemp("examples"))
 
 

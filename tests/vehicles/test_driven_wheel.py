@@ -1,4 +1,4 @@
-"""Driven wheel: a pythonfmu controller keeps upright what alone would fall, along a line and a circle."""
+"""Driven wheel: a controller keeps upright what alone would fall, along a line and a circle."""
 
 import numpy as np
 from support.bounds import beyond, within

@@ -23,7 +23,7 @@ def test_the_package_is_valid_ssp_and_its_parameters_are_bound_at_the_component(
     assert len(structure.system.connections) == len(suspended.SUSPENDED.connections)
     assert structure.system.parameterBindings == []
     bound = {c.name: [b.source for b in c.parameterBindings] for c in structure.system.elements}
-    assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": [], "brakes": ["resources/brakes.ssv"]}
+    assert bound == {"wheel": ["resources/wheel.ssv"], "quarter_car": ["resources/quarter_car.ssv"]}
     written = read_ssv(str(package), "resources/wheel.ssv", validate=True).parameters
     assert {p.name: json.loads(p.value) for p in written} == suspended.start(suspended.LAUNCH)["wheel"]
 

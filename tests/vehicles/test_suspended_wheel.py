@@ -8,8 +8,7 @@ from support.bounds import beyond, relative_error, within
 
 from wheelfmu.vehicles import suspended
 from wheelfmu.vehicles.master import Component, Master, loaded
-from wheelfmu.vehicles.options import manoeuvres
-from wheelfmu.vehicles.suspended import LAUNCH, SUSPENDED
+from wheelfmu.vehicles.suspended import ABS, IDEAL, LAUNCH, LOCKED, SUSPENDED
 from wheelfmu.vehicles.vehicle import Errors, Fmus, Table, upright
 
 STEPS = (0.0025, 0.00125, 0.000625)  # s
@@ -56,8 +55,8 @@ def test_a_run_ends_at_its_stop_whether_or_not_the_step_divides_it(
 
 
 ROLLS = {"wheel": upright(0.0, 0.0, 0.0, 1.0, 0.0, 0.35)}
-LOCKED = {**upright(0.0, 0.0, 0.0, 0.0, 0.0, 0.35), "guided": True, "slip_x_start": 20.0, "M_brake": 1e4}
-SLIDES = {"wheel": {**LOCKED, "mu_max": 0.1, "mu_slide": 0.1}}
+SKIDS = {**upright(0.0, 0.0, 0.0, 0.0, 0.0, 0.35), "guided": True, "slip_x_start": 20.0, "M_brake": 1e4}
+SLIDES = {"wheel": {**SKIDS, "mu_max": 0.1, "mu_slide": 0.1}}
 LIMITS = [(ROLLS, 0.031, within), (ROLLS, 0.033, beyond), (SLIDES, 0.0185, within), (SLIDES, 0.0195, beyond)]
 
 
@@ -74,37 +73,34 @@ def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmu
     check(apart, 1, "relative speed, 1 or 20 m/s at the start")
 
 
-ABS = manoeuvres("suspended")["abs"]
-
-
 @pytest.fixture(scope="module")
-def stops(fmus: Fmus) -> Table:
-    return SUSPENDED.drive(fmus, ABS, ABS.h, ABS.exchange, 0.002).whole
+def stops(fmus: Fmus) -> dict[str, Table]:
+    return {run.name: SUSPENDED.drive(fmus, run, run.h, run.exchange, run.grid).whole for run in (ABS, IDEAL, LOCKED)}
 
 
-def test_a_locked_and_an_ideal_brake_stop_after_the_closed_forms_way(stops: Table) -> None:
-    for name, exact in (("locked", suspended.sliding_way(stops, ABS)), ("ideal", suspended.gripping_way(stops, ABS))):
-        off = suspended.way(stops, ABS, name) / exact - 1
-        within(abs(off), 1e-3, f"{name}: way off the closed form, relative")
-        beyond(abs(1.005 * (off + 1) - 1), 3e-3, f"{name}: way 0.5 % longer off the closed form, relative")
-    assert np.any(stops["locked.slip_x"]) and not np.any(stops["ideal.slip_x"])
+@pytest.mark.parametrize(("run", "closed_form"), [(LOCKED, suspended.sliding_way), (IDEAL, suspended.gripping_way)])
+def test_a_locked_and_an_ideal_brake_stop_after_the_closed_forms_way(stops, run, closed_form) -> None:
+    off = suspended.way(stops[run.name], run) / closed_form(stops[run.name], run) - 1
+    within(abs(off), 1e-3, "way off the closed form, relative")
+    beyond(abs(1.005 * (off + 1) - 1), 3e-3, "way 0.5 % longer off the closed form, relative")
+    assert np.any(stops[run.name]["slip_x"]) == (run is LOCKED)
 
 
-def test_the_anti_lock_controller_stops_between_both_and_keeps_the_wheel_turning(stops: Table, fmus: Fmus) -> None:
-    locked, best = suspended.way(stops, ABS, "locked"), suspended.shortest(stops, ABS)
-    found = suspended.way(stops, ABS, "abs")
-    assert best < found
+def test_the_anti_lock_controller_stops_between_both_and_keeps_the_wheel_turning(stops, fmus: Fmus) -> None:
+    locked, found = suspended.way(stops["locked"], LOCKED), suspended.way(stops["abs"], ABS)
+    within(abs(suspended.sliding_way(stops["abs"], ABS) / locked - 1), 1e-2, "way as if locked off the locked one's")
+    assert suspended.shortest(stops["abs"], ABS) < found
     within(found / locked, 0.95, "way over that of the locked wheel")
 
-    def least_turn(name: str) -> float:
-        fast = (stops["time"] > 0.5) & (stops[f"{name}.X_B_dot"] > 2)
-        return float((-0.35 * stops[f"{name}.omega_z"][fast] / stops[f"{name}.X_B_dot"][fast]).min())
+    def least_turn(table: Table) -> float:
+        fast = (table["time"] > 0.5) & (table["X_B_dot"] > 2)
+        return float((-0.35 * table["omega_z"][fast] / table["X_B_dot"][fast]).min())
 
-    beyond(least_turn("abs"), 0.4, "speed of the tread over that of the vehicle")
-    assert least_turn("locked") == 0
+    beyond(least_turn(stops["abs"]), 0.4, "speed of the tread over that of the vehicle")
+    assert least_turn(stops["locked"]) == 0
     never = ABS.changed(slip_build=2.0, slip_dump=2.0)  # the controller never acts
-    lame = SUSPENDED.drive(fmus, never, ABS.h, ABS.exchange, 0.002).whole
-    assert suspended.way(lame, never, "abs") == suspended.way(lame, never, "locked")
+    lame = SUSPENDED.drive(fmus, never, ABS.h, ABS.exchange, ABS.grid).whole
+    assert suspended.way(lame, never) == locked
 
 
 def test_the_master_refuses_an_algebraic_loop(fmus: Fmus) -> None:

@@ -9,7 +9,6 @@ WORDS = [
     "asan",
     "browser",
     "test",
-    "vehicles",
     "study",
     "control",
     "report",

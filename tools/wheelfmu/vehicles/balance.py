@@ -4,14 +4,13 @@ The wheel rolls at 2 rad/s (0.7 m/s), below the speed at which upright rolling i
 starts with a small push to the side. Fixed axes; theta is 90 degrees upright.
 """
 
-from dataclasses import replace
 from math import inf, pi
 
 import numpy as np
 from fmpy import simulate_fmu
 
 from .options import Manoeuvre, file, manoeuvres
-from .vehicle import Fmus, Run, Table, Vehicle, road
+from .vehicle import Fmus, Table, Vehicle, road
 
 CIRCLE = manoeuvres("balance")["circle"]
 STEP = 0.005  # s
@@ -22,13 +21,12 @@ START = {"psi_start": 0, "theta_start": pi / 2, "phi_dot_start": -2, "theta_dot_
 OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 
-def beside_alone(run: Run, course: Manoeuvre, fmus: Fmus) -> Run:
+def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
     """With the wheel without the controller, up to where its run ends, in columns alone.NAME."""
-    rows, how = len(run.table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
+    rows, how = len(table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
     how["start_values"] = START | road(course)
     alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
-    more = {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
-    return replace(run, table=run.table | more)
+    return table | {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
 
 
 def fall_time(table: Table, of: str = "") -> float:
@@ -55,20 +53,12 @@ def judge(table: Table) -> dict[str, float]:
     }
 
 
-def fallen(table: Table, of: str = "") -> str:
-    """When the wheel leans over, how near its plane comes to the ground on either side, how it stands at the end."""
-    plane = np.degrees(np.pi / 2 - np.abs(table[f"{of}theta"] - np.pi / 2))
-    plane = plane[np.isfinite(plane)]
-    lowest, end = (f"{angle:.0f} degree{'s' * (round(angle) != 1)}" for angle in (plane.min(), plane[-1]))
-    after = f"leans over by more than 45 degrees after {fall_time(table, of):.2f} s"
-    return f"{after}, comes down to {lowest} to the ground, and is at {end} at the end of the run"
-
-
 def verdict(table: Table, course: Manoeuvre) -> tuple[bool, list[str]]:
     """Of the wheel alone, and of the one that was to drive a circle."""
-    wanted, single = course["R"], f"Alone it {fallen(table, 'alone.')}."
-    if np.isfinite(fall_time(table)):
-        return False, [single, f"Failed: the controller does not hold it: it {fallen(table)}."]
+    wanted, leans = course["R"], "leans over by more than 45 degrees after"
+    single, fall = f"Alone it {leans} {fall_time(table, 'alone.'):.2f} s.", fall_time(table)
+    if np.isfinite(fall):
+        return False, [single, f"Failed: the controller does not hold it: it {leans} {fall:.2f} s."]
     found = judge(table)
     radius, scatter, tilt = (found[f"circle_{name}"] for name in ("radius", "scatter", "tilt"))
     held = f"leaning by up to {tilt:.1f} degrees; its last turn is within {scatter:.2g} m of a circle of {radius:.4g} m"

@@ -5,14 +5,13 @@ car/manoeuvres.toml is compared with closed forms (car_judges.py).
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 from math import cos, pi, sin, tan
 
 import numpy as np
 
 from .car_judges import NAMES, RIGHT, WHEELS, R, constants, demand, findings, force, friction, per_axle, slid
 from .options import Manoeuvre, file
-from .vehicle import DRY_ROAD, Fmus, Run, Table, Vehicle, road, upright
+from .vehicle import DRY_ROAD, Fmus, Table, Vehicle, road, upright
 
 LIMITS = file("car")["limits"]
 
@@ -34,19 +33,18 @@ def beneath(manoeuvre: Manoeuvre, wheel: str) -> dict[str, float]:
     return {name: value for name, value in of.items() if value}
 
 
-def complete(run: Run, manoeuvre: Manoeuvre, _fmus: Fmus) -> Run:
+def complete(table: Table, manoeuvre: Manoeuvre, _fmus: Fmus) -> Table:
     """With a_y, the acceleration of the whole car's centre of mass to the left of the heading [m/s2], from the ground's
     forces; beta, the sideslip angle of the chassis' centre of mass [rad], from differences of its place; and mu, the
     friction that each axle requires."""
-    table = run.table
     if len(table["time"]) < 3:
-        return run
+        return table
     back = np.exp(-1j * table["psi"])  # from X + i Y to along + i across
     pushed = back * (force(table, WHEELS, 1) + 1j * force(table, WHEELS, 2)) / constants(manoeuvre).mass
     moved = back * np.gradient(table["X"] + 1j * table["Y"], table["time"], edge_order=2)
     required = {f"{axle}.mu": mu for axle, mu in friction(table).items()}
     angles = {"a_y": pushed.imag, "beta": np.arctan2(moved.imag, np.abs(moved.real))}
-    return replace(run, table=table | angles | required)
+    return table | angles | required
 
 
 def subtitle(manoeuvre: Manoeuvre) -> str:

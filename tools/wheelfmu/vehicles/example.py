@@ -27,16 +27,13 @@ def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
     """Whether an ending, or a friction that no road has, comes from the coupling: with a much shorter step it comes
     elsewhere, or not at all."""
     of, h = VEHICLES[asked.vehicle], min(asked.h / 4, max(asked.h / 16, 1e-4))  # s, which is short for every link here
-    end = run.endings[0].time if run.endings else asked.stop
+    end = run.ending.time if run.ending else asked.stop
     again = of.drive(fmus, asked.changed(stop=min(asked.stop, 1.1 * end + 10 * asked.h)), h, asked.exchange, asked.h)
-    other = again.endings[0].time if again.endings else None
-    if other is not None and abs(other - end) < 2 * asked.h + 0.02 * end:
+    other = again.ending.time if again.ending else asked.stop
+    alike = bool(run.ending) == bool(again.ending) and abs(other - end) < 2 * asked.h + 0.02 * end
+    if alike and (run.ending or of.grip(again.table) > DRY_ROAD):
         return ""
-    instead = "continues" if other is None else f"ends at t = {other:.3f} s"
-    if not run.endings and other is None:
-        if of.grip(again.table) > DRY_ROAD:
-            return ""
-        instead = f"requires {of.grip(again.table):.2f}"
+    instead = f"ends at t = {other:.3f} s" if again.ending else f"goes on and requires {of.grip(again.table):.2f}"
     cause = f"The likely cause is the communication step h = {1000 * asked.h:g} ms: the coupling diverges numerically"
     return f"{cause} (a run with {1000 * h:g} ms {instead}). Choose a shorter step: docs/vehicle.md."
 
@@ -44,11 +41,11 @@ def diverged(fmus: Fmus, asked: Manoeuvre, run: Run) -> str:
 def judged(fmus: Fmus, asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
     """Whether the run is the manoeuvre, and why."""
     of = VEHICLES[asked.vehicle]
-    if not run.endings:
+    if not run.ending:
         passed, lines = of.verdict(run.table, asked)
         cause = diverged(fmus, asked, run) if of.grip(run.table) > DRY_ROAD else ""
         return passed, [*lines, *filter(None, [cause])]
-    how, cause = "\n".join(map(of.describe, run.endings)), diverged(fmus, asked, run)
+    how, cause = of.describe(run.ending), diverged(fmus, asked, run)
     if not cause and "lifts_off" in asked.ends and "lifted off" in how:
         return True, [f"As intended: {how}"]
     if not cause and asked["mu_max"] and of is car.CAR:

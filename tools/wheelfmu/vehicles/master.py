@@ -40,14 +40,6 @@ class Ended(Exception):  # noqa: N818 - an ending, such as a wheel's lift-off, i
     message: str
 
 
-def let_go_of_python(fmu: FMU2Slave) -> None:
-    """For FMUs of pythonfmu 0.7.0, whose library keeps a shared pointer to its interpreter. When the process ends, the
-    pointer's destructor and then the library's own each release it: the second writes into freed memory. Released here,
-    it is empty by then; the instance keeps a separate pointer."""
-    if release := getattr(fmu.dll, "finalizePythonInterpreter", None):
-        release()
-
-
 @dataclass
 class Component:
     """One FMU: its name in the system, its file, and the start values of its parameters."""
@@ -92,7 +84,6 @@ class Component:
     def free(self) -> None:
         """End the run and remove the unpacked files."""
         if self.fmu:
-            let_go_of_python(self.fmu)
             self.fmu.freeInstance()
             shutil.rmtree(self.folder, ignore_errors=True)
 

@@ -10,6 +10,7 @@ import re
 import tomllib
 from dataclasses import dataclass, field, replace
 from functools import cache
+from itertools import islice
 from typing import Self
 
 from wheelfmu.fmu.paths import ROOT
@@ -68,7 +69,7 @@ class Manoeuvre:
     h: float = 0.001  # s
     grid: float | None = None  # s, of the table
     positive: tuple[str, ...] = ()  # parameters that have to be above zero
-    zero: tuple[str, ...] = ()  # that have to be zero
+    holds: tuple[str, ...] = ()  # parameters of which its closed forms take any value
 
     @property
     def called(self) -> str:
@@ -78,6 +79,13 @@ class Manoeuvre:
     def __getitem__(self, name: str) -> float:
         name = name if name in self.given else self.follows.get(name, name)
         return self.given.get(name, every(self.vehicle)[name].start)
+
+    @property
+    def beyond(self) -> str:
+        """Why its closed forms do not hold, in words: a parameter that is changed and must not be; or empty."""
+        own = manoeuvres(self.vehicle)[self.name]
+        changed = (name for name in self.given if self[name] != own[name] and name not in self.holds)
+        return "".join(f"{name} is changed" for name in islice(changed, 1))
 
     def changed(self, **values: float) -> Self:
         """With other parameters, or another stop, step or exchange."""
@@ -95,8 +103,7 @@ def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     found = {}
     for name, of in file(vehicle).get("manoeuvre", {}).items():
         given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
-        stop = of["stop"] if "stop" in of else every(vehicle)["stop"].start
-        found[name] = Manoeuvre(vehicle, name, **file(vehicle).get("how", {}) | of | {"stop": stop, "given": given})
+        found[name] = Manoeuvre(vehicle, name, **file(vehicle).get("how", {}) | of | {"given": given})
     return found
 
 
@@ -152,8 +159,6 @@ def asked(vehicle: str = "", *rest: str) -> Manoeuvre | None:
         raise Fault(f"stop = {run.stop:g}: it must be at least the step h, {run.h:g} s.")
     if lacking := [name for name in run.positive if run[name] <= 0]:
         raise Fault(f"{lacking[0]} = {run[lacking[0]]:g}: it must be above 0 in the manoeuvre {run.name}.")
-    if present := [name for name in run.zero if run[name]]:
-        raise Fault(f"{present[0]} = {run[present[0]]:g}: it must be 0 in the manoeuvre {run.name}.")
     for side in ("", "_right"):
         if f"mu_slide{side}" not in every(vehicle):
             continue

@@ -12,7 +12,6 @@ from math import inf, pi
 from pathlib import Path
 
 import numpy as np
-from pythonfmu.builder import FmuBuilder
 
 from wheelfmu.fmu import building
 from wheelfmu.fmu.paths import ROOT, build_folder
@@ -28,19 +27,10 @@ STEPS = (0.002, 0.001, 0.0005)  # s
 Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
 
 
-def build_c(folder: Path) -> Fmus:
-    """The FMUs in C++, by name, by CMake (../CMakeLists.txt)."""
-    building.build("the examples", folder, EXAMPLES, [f"-DPython3_EXECUTABLE={sys.executable}"])
-    return {fmu.stem: fmu for fmu in folder.glob("*.fmu")}
-
-
 def build_all(folder: Path = ROOT / "build" / "examples") -> Fmus:
-    """Every FMU of the examples by name; balance.fmu, by pythonfmu, needs a host with a Python interpreter."""
-    fmus = build_c(folder)
-    script, balance = EXAMPLES / "balance" / "balance.py", folder / "balance.fmu"
-    how = {"project_files": [script.with_suffix(".csv")], "needsExecutionTool": "false"}
-    FmuBuilder.build_FMU(script, dest=balance, **how)
-    return {**fmus, "balance": balance, "wheel": build_folder() / "wheel.fmu"}
+    """Every FMU of the examples by name, and the wheel; by CMake (../CMakeLists.txt)."""
+    building.build("the examples", folder, EXAMPLES, [f"-DPython3_EXECUTABLE={sys.executable}"])
+    return {fmu.stem: fmu for fmu in folder.glob("*.fmu")} | {"wheel": build_folder() / "wheel.fmu"}
 
 
 def orders(errors: dict[float, float]) -> np.ndarray:
@@ -50,16 +40,10 @@ def orders(errors: dict[float, float]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Run:
-    """Columns on a grid; how it ended, if early, and how the runs beside it did."""
+    """Columns on a grid, and how it ended, if early."""
 
     table: Table
     ending: Ended | None = None
-    others: tuple[Ended, ...] = ()
-
-    @property
-    def endings(self) -> list[Ended]:
-        """All of them, the earliest first."""
-        return sorted(filter(None, (self.ending, *self.others)), key=lambda end: end.time)
 
     @property
     def whole(self) -> Table:
@@ -83,7 +67,7 @@ class Vehicle:
     starts: Callable[[Manoeuvre], dict[str, dict[str, float]]]  # start values of its wheels, and more of its models
     verdict: Callable[[Table, Manoeuvre], tuple[bool, list[str]]]  # of a run that reached its end
     wheels: dict[str, str] = field(default_factory=dict)
-    complete: Callable[[Run, Manoeuvre, Fmus], Run] = lambda run, _manoeuvre, _fmus: run
+    complete: Callable[[Table, Manoeuvre, Fmus], Table] = lambda table, _manoeuvre, _fmus: table
     grip: Callable[[Table], float] = largest_grip
     subtitle: Callable[[Manoeuvre], str] = lambda _manoeuvre: ""
 
@@ -124,8 +108,8 @@ class Vehicle:
             except Ended as end:
                 ending = end
         names = ["time", *(f"{part}.{name}" if part in self.wheels else name for part, name in self.record)]
-        columns = np.reshape(rows, (-1, len(names))).T
-        return self.complete(Run(dict(zip(names, columns, strict=True)), ending), of, fmus)
+        table = dict(zip(names, np.reshape(rows, (-1, len(names))).T, strict=True))
+        return Run(self.complete(table, of, fmus), ending)
 
     def package(self, fmus: Fmus, manoeuvre: Manoeuvre, step: float, folder: Path) -> Path:
         """Its SSP package. A master that begins with zero inputs finds the body free until t_couple."""
