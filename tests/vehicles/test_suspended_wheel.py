@@ -75,7 +75,7 @@ def test_a_damper_bounds_the_step_by_the_reduced_mass_of_both_partners(fmus: Fmu
 
 @pytest.fixture(scope="module")
 def stops(fmus: Fmus) -> dict[str, Table]:
-    return {run.name: SUSPENDED.drive(fmus, run, run.h, run.exchange, run.grid).whole for run in (ABS, IDEAL, LOCKED)}
+    return {run.name: SUSPENDED.drive(fmus, run).whole for run in (ABS, IDEAL, LOCKED)}
 
 
 @pytest.mark.parametrize(("run", "closed_form"), [(LOCKED, suspended.sliding_way), (IDEAL, suspended.gripping_way)])
@@ -99,7 +99,7 @@ def test_the_anti_lock_controller_stops_between_both_and_keeps_the_wheel_turning
     beyond(least_turn(stops["abs"]), 0.4, "speed of the tread over that of the vehicle")
     assert least_turn(stops["locked"]) == 0
     never = ABS.changed(slip_build=2.0, slip_dump=2.0)  # the controller never acts
-    lame = SUSPENDED.drive(fmus, never, ABS.h, ABS.exchange, ABS.grid).whole
+    lame = SUSPENDED.drive(fmus, never).whole
     assert suspended.way(lame, never) == locked
 
 

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import runpy
+import time
 from itertools import product
 
 import numpy as np
 import pandas as pd
 
-from wheelfmu.vehicles import balance, car_judges, suspended
+from wheelfmu.diagrams import style
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.vehicles import balance, car_judges, planar, suspended
 from wheelfmu.vehicles.car import CAR
-from wheelfmu.vehicles.car_judges import MANOEUVRES
+from wheelfmu.vehicles.car_judges import CURVE, LANE, MANOEUVRES, SPLIT, STEP, STRAIGHT, TOO_FAST, WHEELS
 from wheelfmu.vehicles.drawing import draw
-from wheelfmu.vehicles.options import EXCHANGES, manoeuvres
-from wheelfmu.vehicles.vehicle import STEPS, orders
+from wheelfmu.vehicles.options import EXCHANGES, Manoeuvre
+from wheelfmu.vehicles.suspended import SUSPENDED
+from wheelfmu.vehicles.vehicle import STEPS, Table, Vehicle, orders
 
+from . import plots
 from .page import Report, Row, Tables, part
 
-GRID = 0.25  # s, where runs of the car are compared
-COMPARED = tuple(name for name in MANOEUVRES if name not in (car_judges.TOO_FAST.name, car_judges.SPLIT.name))
-WAYS = {"locked": "locked wheel", "ideal": "ideal brake", "abs": "anti-lock; closed form: the shortest"}
+GRID = 0.2  # s, where runs of the car are compared; every step divides it
+COMPARED = tuple(name for name in MANOEUVRES if name not in (TOO_FAST.name, SPLIT.name))
+HALTS = ("straight", "hill", "curve")  # in which wheels stop inside a step
+IN_PLANE = {"step": STEP.changed(**planar.LEVEL), "curve": CURVE.changed(stop=7.0, **planar.LEVEL)}  # until it stands
+COURSE = ("X", "Y", "psi", "v", "omega")
+STOPS = (  # closed form, and the words for the brake
+    (suspended.LOCKED, suspended.sliding_way, "locked wheel"),
+    (suspended.IDEAL, suspended.gripping_way, "ideal brake"),
+    (suspended.ABS, suspended.shortest, "anti-lock; closed form: the shortest"),
+)
 KINDS = {"positions held": "values held", "held": "positions that follow", "derivatives": "first derivatives"}
 
 
@@ -42,8 +55,8 @@ def suspended_wheel(report: Report) -> dict[str, object]:
     table = pd.DataFrame(found).reset_index(drop=True).rename(columns=KINDS)
     table.insert(0, "step, ms", 1000 * np.array(steps))
     table["share lost to the lag of a held position"] = [suspended.drag_share(h) for h in steps]
-    launch = suspended.SUSPENDED.drive(report.fmus, suspended.LAUNCH, 0.000625, grid=0.005).whole
-    draw(suspended.SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png")
+    launch = SUSPENDED.drive(report.fmus, suspended.LAUNCH, 0.000625, grid=0.005).whole
+    draw(SUSPENDED, suspended.LAUNCH, launch, report.folder / "vehicles_suspended.png")
     late = truth["time"] > 2.5  # s
     slope = np.polyfit(truth["time"][late], truth["X_B_dot"][late], 1)[0]
     figures = {"order": 2 - min(orders(found["derivatives"]))}
@@ -53,16 +66,29 @@ def suspended_wheel(report: Report) -> dict[str, object]:
 @part(60)
 def sliding(report: Report) -> pd.DataFrame:
     """wheels that slide: three stops of the suspended wheel; a car on a road that is slippery on the right"""
-    run, split = manoeuvres("suspended")["abs"], car_judges.SPLIT
-    table = suspended.SUSPENDED.drive(report.fmus, run, run.h, run.exchange, run.grid).whole
-    forms = {"locked": suspended.sliding_way, "ideal": suspended.gripping_way, "abs": suspended.shortest}
     rows: list[tuple[str, str, float, float | None]] = []
-    for name, form in forms.items():
-        rows.append((f"stopping distance, {WAYS[name]}", "m", suspended.way(table, run, name), form(table, run)))
-    found = car_judges.judge(CAR.drive(report.fmus, split).whole, split)
+    tables = {run.name: SUSPENDED.drive(report.fmus, run).whole for run, *_ in STOPS}
+    for run, form, name in STOPS:
+        way = suspended.way(tables[run.name], run)
+        rows.append((f"stopping distance, {name}", "m", way, form(tables[run.name], run)))
+    brakes(report, tables)
+    found = car_judges.judge(CAR.drive(report.fmus, SPLIT, 0.001).whole, SPLIT)
     rows += [(f"car: {f.what}", f.unit, f.measured, f.exact) for f in found]
     judged = pd.DataFrame(rows, columns=["quantity", "unit", "measured", "closed form"])
     return judged.assign(**{"relative difference": (judged["measured"] / judged["closed form"] - 1).abs()})
+
+
+def brakes(report: Report, tables: dict[str, Table]) -> None:
+    """The three stops in one picture."""
+    sheet, (speed, capacity) = plots.sheet("ab")
+    for (run, _, words), colour in zip(STOPS, plots.COLOURS, strict=False):
+        table, how = tables[run.name], {"label": words.partition(";")[0], "color": colour}
+        speed.plot(table["time"], 3.6 * table["X_B_dot"], **how)
+        capacity.plot(table["time"], table["M_brake"], **how)
+    plots.label(speed, "time [s]", "speed of the sprung mass [km/h]")
+    plots.label(capacity, "time [s]", "capacity of the brake [N m]")
+    plots.legend_below(sheet, [speed])
+    style.save_png(sheet, report.folder / "vehicles_brakes.png", plots.DPI)
 
 
 @part(120)
@@ -72,35 +98,112 @@ def car_runs(report: Report) -> dict[str, object]:
     for name in ("step",) if report.quick else COMPARED:
         manoeuvre = MANOEUVRES[name]
         table = CAR.drive(report.fmus, manoeuvre).table
-        draw(CAR, manoeuvre, table, report.folder / f"vehicles_{name}.png") if name in ("lane", "hill") else None
+        draw(CAR, manoeuvre, table, report.folder / f"vehicles_{name}.png") if name in ("lane", "curve") else None
         found = car_judges.judge(table, manoeuvre)
         judged += [(name, f.what, f.unit, f.measured, f.exact) for f in found]
     forms = ["manoeuvre", "quantity", "unit", "measured", "closed form"]
     return {"car_values": pd.DataFrame(judged, columns=forms)}
 
 
-@part(600, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED})
+def ten_seconds(name: str) -> Manoeuvre:
+    return MANOEUVRES[name].changed(stop=min(MANOEUVRES[name].stop, 10.0))
+
+
+@part(300, {"manoeuvre": lambda report: ("step",) if report.quick else COMPARED})
 def car_errors(report: Report, name: str) -> list[Row]:
     """the car, ten seconds at most: error against rollback at half of the least step, by master, step and output"""
-    run = MANOEUVRES[name].changed(stop=min(MANOEUVRES[name].stop, 10.0))
+    run = ten_seconds(name)
     truth = CAR.drive(report.fmus, run, STEPS[-1] / 2, "rollback", GRID).whole
     rows: list[Row] = []
-    for exchange, h in product(EXCHANGES, STEPS):
+    for exchange, h in [*product(EXCHANGES, STEPS), (run.exchange, run.h)]:
+        begin = time.process_time()
         found = CAR.apart(CAR.drive(report.fmus, run, h, exchange, GRID).whole, truth)
+        took = (time.process_time() - begin) / run.stop
         head = {"inputs over the step": exchange, "step [ms]": 1000 * h}
-        rows.append(head | found | {"largest": max(found.values())})
+        course = max(found[n] for n in COURSE[:4])
+        rows.append(head | found | {"largest": max(found.values()), "course": course, "computing time": took})
     return rows
 
 
-def largest(tables: Tables) -> pd.DataFrame:
-    """The car's largest error by manoeuvre, over the exchange and the step."""
-    found = tables["car_errors"]
-    by = found.pivot(index="manoeuvre", columns=["inputs over the step", "step [ms]"], values="largest")
-    return by.loc[found["manoeuvre"].unique()]
+@part(60, {"manoeuvre": lambda report: ("step",) if report.quick else tuple(IN_PLANE)})
+def in_plane(report: Report, name: str) -> list[Row]:
+    """the car in the plane: error against one system of equations, integrated by SciPy"""
+    run = IN_PLANE[name]
+    truth = planar.solved(run, np.arange(0, run.stop + GRID / 2, GRID))
+    found = {(x, h): CAR.drive(report.fmus, run, h, x, GRID).whole for x, h in product(EXCHANGES, STEPS)}
+    far = {case: max(CAR.apart(table, truth)[n] for n in COURSE) for case, table in found.items()}
+    return [{"inputs over the step": x, "step [ms]": 1000 * h, "largest": error} for (x, h), error in far.items()]
+
+
+@part(60)
+def limits(report: Report) -> pd.DataFrame:
+    """the largest stable step: by the rule, and where the coupled FMUs begin to diverge"""
+    of = runpy.run_path(str(ROOT / "examples" / "python" / "step_limit.py"))
+    step_limit, Wheel = of["step_limit"], of["Wheel"]
+    rows: list[Row] = []
+    rolls = suspended.LAUNCH.changed(v=10.0, v_start=10.01, M_drive=0.0, s=0.0)
+    skids = suspended.LOCKED.changed(v=80.0, t_brake=0.0, s=0.0)
+    for name, run, wheel in (("rolls", rolls, Wheel()), ("slides", skids, Wheel(slides=True))):
+        rule = step_limit({"wheel": wheel}, {"body": run["m_B"]}, [(run["k"], run["c"], ("wheel", "X"), "body")])
+        rows.append({"coupling": f"suspended wheel, which {name}"} | bounds(report, SUSPENDED, run, "F_X", rule))
+    run = STRAIGHT.changed(v=10.0, v_start=10.01, M_0=0.0, B_0=0.0, s=0.0)
+    along = [(run["k_h"], run["c_h"], (w, "X"), {"X": 1.0, "yaw": -run[f"y_{w}"]}) for w in WHEELS]
+    across = [(run["k_h"], run["c_h"], None, {"Y": 1.0, "yaw": run[f"x_{w}"]}) for w in WHEELS]
+    bodies = {"X": run["m_B"], "Y": run["m_B"], "yaw": run["J_3"]}
+    rule = step_limit({w: Wheel() for w in WHEELS}, bodies, [*along, *across])
+    return pd.DataFrame([*rows, {"coupling": "car, whose wheels roll"} | bounds(report, CAR, run, "fl.lambda_1", rule)])
+
+
+def bounds(report: Report, of: Vehicle, run: Manoeuvre, signal: str, rule: float) -> Row:
+    """Between which steps the coupling begins to diverge, by bisection from 30 % below the rule to 30 % above."""
+    stable, diverges = 0.7 * rule, 1.3 * rule
+    while diverges - stable > 0.01 * rule:
+        h = (stable + diverges) / 2
+        stable, diverges = (stable, h) if grows(report, of, run, signal, h) else (h, diverges)
+    off = abs((stable + diverges) / 2 / rule - 1)
+    return {"rule, ms": 1e3 * rule, "stable, ms": 1e3 * stable, "diverges, ms": 1e3 * diverges, "off the rule": off}
+
+
+def grows(report: Report, of: Vehicle, run: Manoeuvre, signal: str, h: float) -> bool:
+    """Whether a signal swings wider at the end of 400 steps with held values than near their begin."""
+    driven = of.drive(report.fmus, run.changed(stop=400 * h), h, "held", h)
+    return bool(driven.ending) or np.ptp(driven.table[signal][-40:]) > np.ptp(driven.table[signal][10:50])
 
 
 @part(1)
-def rollback(report: Report) -> dict[str, float]:
-    """the car: the largest error where no wheel stops"""
-    moving = largest(report.tables).drop(["straight", "hill"], errors="ignore")
-    return {"rollback": moving["rollback", 1000 * STEPS[0]].max()}
+def car_steps(report: Report) -> dict[str, float]:
+    """the car: orders, and the step that a command takes"""
+    far, plane = moving(report.tables), report.tables["in_plane"]
+    finest = plane[plane["step [ms]"] == 1000 * STEPS[-1]].groupby("inputs over the step")["largest"].max()
+    by = plane.groupby(["inputs over the step", "step [ms]"])["largest"].max()
+    order = {x: np.log2(by[x, 1000 * STEPS[0]] / by[x, 1000 * STEPS[1]]) for x in EXCHANGES}
+    off = {f"order_{x}": abs(order[x] - p) for x, p in zip(EXCHANGES, (1, 2, 4), strict=True)}
+    every = report.tables["car_errors"]
+    taken = every[every["step [ms]"] == 1000 * LANE.h]
+    return off | {
+        "plane": finest["rollback"],
+        "rollback": far["rollback", 1000 * STEPS[-1]],
+        "step": 1000 * LANE.h,
+        "step_course": taken["course"].max(),
+        "step_time": taken["computing time"].max(),
+    }
+
+
+def moving(tables: Tables) -> pd.Series:
+    """The largest error of a car whose wheels never stop, by exchange and step."""
+    found = tables["car_errors"]
+    found = found[~found["manoeuvre"].isin(HALTS)]
+    return found.groupby(["inputs over the step", "step [ms]"])["largest"].max()
+
+
+def views(tables: Tables) -> Tables:
+    """The errors by exchange and step: of the whole car, in the plane; with the computing time."""
+    every, plane = tables["car_errors"], tables["in_plane"]
+    keys = ["inputs over the step", "step [ms]"]
+    found = {
+        "whole car, against rollback at half the least step": moving(tables),
+        "in the plane, against one system of equations": plane.groupby(keys)["largest"].max(),
+        "computing time over simulated time": every.groupby(keys)["computing time"].median(),
+    }
+    rows = pd.DataFrame(found).dropna().sort_index(ascending=[True, False]).loc[list(EXCHANGES)]
+    return tables | {"steps": rows.reset_index()}

@@ -13,7 +13,6 @@ from .options import Manoeuvre, file, manoeuvres
 from .vehicle import Fmus, Table, Vehicle, road
 
 CIRCLE = manoeuvres("balance")["circle"]
-STEP = 0.005  # s
 T_CIRCLE, RADIUS, SPEED = CIRCLE["t_circle"], CIRCLE["R"], 0.7  # s, m, m/s
 TURN = 2 * pi * RADIUS / SPEED  # s
 # theta_dot_start is the push.
@@ -23,7 +22,7 @@ OF_WHEEL = file("balance")["record"][0][1:]  # the columns of the wheel
 
 def beside_alone(table: Table, course: Manoeuvre, fmus: Fmus) -> Table:
     """With the wheel without the controller, up to where its run ends, in columns alone.NAME."""
-    rows, how = len(table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": STEP}
+    rows, how = len(table["time"]), {"fmi_type": "CoSimulation", "output": OF_WHEEL, "output_interval": course.grid}
     how["start_values"] = START | road(course)
     alone = simulate_fmu(str(fmus["wheel"]), stop_time=course.stop, **how)[:rows]
     return table | {f"alone.{n}": np.pad(alone[n], (0, rows - len(alone)), constant_values=np.nan) for n in OF_WHEEL}
@@ -72,4 +71,4 @@ BALANCE = Vehicle("balance", lambda course: {"wheel": START | road(course)}, ver
 
 def drive(fmus: Fmus, course: Manoeuvre = CIRCLE) -> Table:
     """Both runs as the example takes them."""
-    return BALANCE.drive(fmus, course, STEP, "held", STEP).table
+    return BALANCE.drive(fmus, course).table

@@ -16,12 +16,13 @@ Characteristic values in the manner of ISO 4138 (constant steer angle, rising sp
 (two changes of lane); steer angles are those of the bicycle's wheel, not of a steering wheel. A table has time, v,
 omega, psi, roll, delta, a_y and beta, and the ground's forces on each wheel.
 
-A closed form is printed where what it assumes holds (ASSUMES), and a run beyond its bound has failed.
+A closed form is printed where it holds: for any values of the parameters that manoeuvres.toml lists, while no wheel
+slides (but where it must) and no strut reaches its stop. A run beyond its bound has failed.
 """
 
 import tomllib
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -337,57 +338,10 @@ def split(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Fi
 JUDGES = {f.__name__: f for f in (launch, standing, braking, curved, bend, closure, circle, step, lane, split)}
 
 
-# ---- what the closed forms assume: by its words where it does not hold, whether it does ----
-
-
-def still(table: Table, at: np.ndarray, *names: str) -> bool:
-    """Whether columns keep their values at some instants, to a fiftieth of their largest values."""
-    return bool(at.any()) and all(np.ptp(table[n][at]) <= 0.02 * np.abs(table[n]).max() for n in names)
-
-
-def gone(run: Manoeuvre, size: str, end: str, at: float) -> bool:
-    """Whether a torque is not there any more at an instant, or not at all."""
-    return not run[size] or run[end] + run["ramp_M"] <= at
-
-
-def alike(c: SimpleNamespace) -> bool:
-    """Whether left and right are mirror images, of one track."""
-    sides = [[of[w] * c.y[w] for w in WHEELS] for of in (dict.fromkeys(WHEELS, 1.0), c.k, c.drive, c.brake)]
-    even = all(abs(sum(side)) <= 1e-9 * sum(map(abs, side)) for side in sides)
-    return even and np.ptp(np.abs([*c.y.values()])) < 1e-9
-
-
-def stiff(run: Manoeuvre) -> bool:
-    """Whether bushings have at least half the layout's stiffness."""
-    return all(run[name] >= 0.5 * LAYOUT["chassis"][name] for name in ("k_h",))
-
-
-def full_torque(table: Table, run: Manoeuvre) -> bool:
-    """Whether the drive torque alone acts on a car that moves forward."""
-    begin, end, at = run["t_off"] - 1, run["t_off"], pulling(table, run)
-    there = run["t_on"] + run["ramp_M"] + 0.3 <= begin and end <= run.stop and not run["k_v"]
-    alone = gone(run, "B_hold", "t_release", begin) and (not run["B_0"] or run["t_brake"] >= end)
-    return bool(there and alone and at.any() and table["v"][at].min() > 0)
-
-
-def full_brakes(table: Table, run: Manoeuvre) -> bool:
-    """Whether the brakes alone act, and stop a car that moves forward."""
-    begin = run["t_brake"]
-    alone = gone(run, "M_0", "t_off", begin) and gone(run, "B_hold", "t_release", begin) and not run["k_v"]
-    moves = np.interp(begin, table["time"], table["v"]) > 0
-    return bool(alone and moves and begin < run.stop and stopped(table, begin))
-
-
-def held(table: Table, run: Manoeuvre) -> bool:
-    """Whether no wheel turns in the two spans of `standing`."""
-    at = before_drive(table, run) | (table["time"] > table["time"][-1] - 1)
-    return run["t_on"] >= 1 and not any(table[f"{w}.omega_z"][at].any() for w in WHEELS)
-
-
-def rises(table: Table, run: Manoeuvre) -> bool:
-    """Whether the lateral acceleration rises from 5 s to 22 s at one steer angle."""
-    at = (table["time"] > 5) & (table["time"] < 22)
-    return run.stop >= 22 and still(table, at, "delta") and np.ptp(table["a_y"][at]) > 1.0
+def steady(table: Table) -> bool:
+    """Whether the last half second is a steady turn: columns keep their values to a fiftieth of their largest."""
+    at = settled(table)
+    return all(np.ptp(table[n][at]) <= 0.02 * np.abs(table[n]).max() for n in ("delta", "v", "omega", "roll"))
 
 
 def locks(table: Table, run: Manoeuvre) -> bool:
@@ -396,43 +350,16 @@ def locks(table: Table, run: Manoeuvre) -> bool:
     return {*slid(table)} == {*RIGHT} and rows * (table["time"][1] - table["time"][0]) > 0.5
 
 
-Holds = Callable[[Table, Manoeuvre, SimpleNamespace], bool]
-ASSUMPTIONS: dict[str, Holds] = {
-    "the links begin later": lambda _t, run, _c: not run["t_couple"],
-    "the bushings are softer than half the layout's": lambda _t, run, _c: stiff(run),
-    "left and right are not alike": lambda _t, _run, c: alike(c),
-    "a strut reaches its stop": lambda t, run, _c: max(np.abs(t[f"d_{w}"]).max() for w in WHEELS) < run["travel"],
-    "a wheel slides": lambda t, _run, _c: not slid(t),
-    "the road is not level": lambda _t, run, _c: not run["slope"],
-    "the road rises across the car": lambda _t, run, _c: abs(run["slope"] * np.sin(run["slope_direction"])) < 1e-9,
-    "the car turns": lambda t, _run, _c: np.ptp(t["psi"]) < 1e-3,
-    "it follows a path": lambda _t, run, _c: not run["path"],
-    "the full drive torque does not act alone for a second": lambda t, run, _c: full_torque(t, run),
-    "the chassis still pitches": lambda t, run, _c: still(t, pulling(t, run), "pitch"),
-    "the brakes alone do not stop it": lambda t, run, _c: full_brakes(t, run),
-    "the car does not stand still": lambda t, run, _c: held(t, run),
-    "it is not steady at the end": lambda t, _run, _c: still(t, settled(t), "delta", "v", "omega", "roll"),
-    "the speed does not rise from 5 s to 22 s at one steer angle": lambda t, run, _c: rises(t, run),
-    "the right wheels do not lock, or a left one slides": lambda t, run, _c: locks(t, run),
-    "the brakes do not act alone": lambda _t, run, _c: not (run["M_0"] or run["delta_0"] or run["k_v"]),
-}
-LINKS = ("the links begin later", "the bushings are softer than half the layout's", "left and right are not alike")
-ROLLS = (*LINKS, "a strut reaches its stop", "a wheel slides")
-AHEAD = (*ROLLS, "the road rises across the car", "the car turns", "it follows a path")
-AROUND = (*ROLLS, "the road is not level", "it follows a path")
-ASSUMES: dict[str, tuple[str, ...]] = {
-    "launch": (*AHEAD, "the full drive torque does not act alone for a second", "the chassis still pitches"),
-    "standing": (*AHEAD, "the car does not stand still"),
-    "braking": (*AHEAD, "the brakes alone do not stop it"),
-    "curved": (*AROUND, "the brakes alone do not stop it"),
-    "bend": (*AROUND, "it is not steady at the end"),
-    "circle": (*AROUND, "the speed does not rise from 5 s to 22 s at one steer angle"),
-    "step": (*AROUND, "it is not steady at the end"),
-    "split": (
-        *(*LINKS, "a strut reaches its stop", "the road rises across the car", "it follows a path"),
-        *("the right wheels do not lock, or a left one slides", "the brakes do not act alone"),
-    ),
-}
+def broken(name: str, table: Table, run: Manoeuvre) -> str:
+    """Why a judge's closed forms do not hold, in words; empty where they do."""
+    reasons = {
+        run.beyond: True,
+        "a wheel slides": name != "split" and bool(slid(table)),
+        "the right wheels do not lock, or a left one slides": name == "split" and not locks(table, run),
+        "a strut reaches its stop": max(np.abs(table[f"d_{w}"]).max() for w in WHEELS) >= run["travel"],
+        "it is not steady at the end": name in ("bend", "step") and not steady(table),
+    }
+    return next((words for words, holds in reasons.items() if words and holds), "")
 
 
 def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
@@ -442,23 +369,22 @@ def judge(table: Table, manoeuvre: Manoeuvre) -> list[Finding]:
 
 def judged(name: str, table: Table, manoeuvre: Manoeuvre) -> tuple[list[Finding], str]:
     """The findings of one judge, and why they have no closed form."""
-    c = constants(manoeuvre)
-    broken = next((words for words in ASSUMES.get(name, ()) if not ASSUMPTIONS[words](table, manoeuvre, c)), "")
+    why = broken(name, table, manoeuvre)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("error")
         try:
-            found = list(JUDGES[name](table, manoeuvre, c))
+            found = list(JUDGES[name](table, manoeuvre, constants(manoeuvre)))
         except (ValueError, IndexError, TypeError, np.linalg.LinAlgError, Warning):
-            return [], broken or "the run is too short for it"
-    return [finding._replace(exact=None) for finding in found] if broken else found, broken
+            return [], why or "the run is too short for it"
+    return [finding._replace(exact=None) for finding in found] if why else found, why
 
 
 def findings(table: Table, manoeuvre: Manoeuvre) -> tuple[list[str], list[str]]:
     """Characteristic values of a manoeuvre in words, beside the closed forms that hold; what is beyond a bound."""
     lines, faults = [], []
     for name in manoeuvre.judges:
-        found, broken = judged(name, table, manoeuvre)
+        found, why = judged(name, table, manoeuvre)
         lines += [f"  {finding}" for finding in found if np.isfinite(finding.measured)]
-        lines += [f"  No closed form ({name}): {broken}."] * bool(broken)
+        lines += [f"  No closed form ({name}): {why}."] * bool(why)
         faults += filter(None, (finding.fault for finding in found))
     return lines, faults

@@ -12,7 +12,7 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
 import shutil
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
-from ctypes import byref, c_double
+from ctypes import POINTER, byref, c_double
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from itertools import groupby
@@ -22,11 +22,23 @@ from pathlib import Path
 import numpy as np
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2FMUstate, fmi2LastSuccessfulTime
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2FMUstate,
+    fmi2Integer,
+    fmi2LastSuccessfulTime,
+    fmi2Real,
+    fmi2ValueReference,
+)
 from fmpy.simulation import apply_start_values
 
 from wheelfmu.fmu.progress import bar
 
+# The orders of the derivatives that are exchanged at a communication point, one after the other: values once more in
+# the end, because some depend on an input's derivative, such as the moment of a carrier whose rates change.
+ORDERS = {"held": (0,), "derivatives": (0, 1, 0), "rollback": (0, 1, 0)}
 Signal = tuple[str, str]  # component, variable
 Connection = tuple[Signal, Signal]  # source, sink
 
@@ -110,6 +122,27 @@ def loaded(*components: Component) -> Iterator[None]:
         yield
 
 
+class Transfer:
+    """Variables of one component that are read or set together, and their places in the arrays of all signals; with
+    arrays of its own, built once: a step of the car makes a hundred such calls."""
+
+    def __init__(self, component: Component, reads: bool, references: list[int], at: list[int]) -> None:
+        size = len(at)
+        self.component, self.reads, self.at, self.values = component, reads, np.array(at), np.zeros(size)
+        self.head = component.fmu.component, (fmi2ValueReference * size)(*references), size
+        self.orders = [(fmi2Integer * size)(*[order] * size) for order in range(4)]
+        self.place = self.values.ctypes.data_as(POINTER(fmi2Real))
+
+    def __call__(self, order: int, signals: np.ndarray) -> None:
+        fmu, more = self.component.fmu, (self.orders[order], self.place) if order else (self.place,)
+        if self.reads:
+            (fmu.fmi2GetRealOutputDerivatives if order else fmu.fmi2GetReal)(*self.head, *more)
+            signals[self.at] = self.values
+        else:
+            self.values[:] = signals[self.at]
+            (fmu.fmi2SetRealInputDerivatives if order else fmu.fmi2SetReal)(*self.head, *more)
+
+
 class Master:
     """Loaded components and their connections [(source, output), (sink, input)], stepped together."""
 
@@ -118,7 +151,7 @@ class Master:
         self.source_of = {sink: source for source, sink in connections}
         # Variables of one component that are read (outputs) or set (inputs) together, with their places in the arrays
         # of all signals.
-        self.transfers: list[tuple[Component, bool, list[int], np.ndarray]] = []
+        self.transfers: list[Transfer] = []
         number: dict[Signal, int] = {}
         for level in self._levels():
             number |= {source: len(number) + k for k, source in enumerate(level)}
@@ -126,9 +159,8 @@ class Master:
             for reads, ends in ((True, [(source, source) for source in level]), (False, sinks)):
                 for name, component in self.components.items():
                     if of := {variable: number[source] for (owner, variable), source in ends if owner == name}:
-                        at = np.array([*of.values()])
-                        self.transfers.append((component, reads, component.references(of), at))
-        self.sets = [transfer for transfer in self.transfers if not transfer[1]]
+                        self.transfers.append(Transfer(component, reads, component.references(of), [*of.values()]))
+        self.sets = [transfer for transfer in self.transfers if not transfer.reads]
         self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(number)))
 
     def _levels(self) -> Iterator[list[Signal]]:
@@ -148,13 +180,13 @@ class Master:
         at the communication points 0, `every`, ... and `stop`: yields the time, at which variables may be read, and
         inputs set that are not connected. Raises Ended."""
         self.states, count = {name: fmi2FMUstate() for name in self.components}, ceil(stop / h - 1e-9)
-        self._exchange(0.0, rates=False)
+        self._exchange(0.0, ORDERS["held"])
         for component in self.components.values():
             component.asked(component.fmu.exitInitializationMode)
         try:
             for i in bar(range(count + 1), shown=progress, leave=False):
                 t, to = (k * h if k < count else stop for k in (i, i + 1))
-                self._exchange(t, rates=exchange != "held")
+                self._exchange(t, ORDERS[exchange])
                 if i % every == 0 or i == count:
                     yield t
                 if i < count and exchange == "rollback":
@@ -181,7 +213,7 @@ class Master:
         for name, component in self.components.items():
             component.fmu.fmi2GetFMUstate(component.fmu.component, byref(self.states[name]))
         self._step(t, h, no_way_back=False)
-        self._exchange(t, rates=True)
+        self._exchange(t, ORDERS["rollback"])
         for name, component in self.components.items():
             component.fmu.setFMUState(self.states[name])
         mean, begin, end = (self.value - self.begin_value) / h, self.begin_rate, self.rate
@@ -190,24 +222,17 @@ class Master:
             self._transfer(t, self.sets, order, signals)
         self._step(t, h, no_way_back=False)
 
-    def _exchange(self, t: float, rates: bool) -> None:
-        self._transfer(t, self.transfers, 0, self.value)
-        if rates:
-            self._transfer(t, self.transfers, 1, self.rate)
+    def _exchange(self, t: float, orders: tuple[int, ...]) -> None:
+        for order in orders:
+            self._transfer(t, self.transfers, order, self.rate if order else self.value)
 
-    def _transfer(self, t: float, transfers: list, order: int, signals: np.ndarray) -> None:
+    def _transfer(self, t: float, transfers: Iterable[Transfer], order: int, signals: np.ndarray) -> None:
         """The values (order 0), or derivatives of this order."""
-        for component, reads, references, at in transfers:
-            fmu, orders = component.fmu, [order] * len(references)
+        for transfer in transfers:
             try:
-                if reads:
-                    signals[at] = fmu.getRealOutputDerivatives(references, orders) if order else fmu.getReal(references)
-                elif order:
-                    fmu.setRealInputDerivatives(references, orders, signals[at])
-                else:
-                    fmu.setReal(references, signals[at])
+                transfer(order, signals)
             except FMICallException:
-                raise component.ended(t) from None
+                raise transfer.component.ended(t) from None
 
     def read(self, signals: Iterable[Signal]) -> list[float]:
         """Their values."""

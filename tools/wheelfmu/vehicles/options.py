@@ -60,13 +60,13 @@ class Manoeuvre:
     name: str
     title: str
     stop: float  # s
+    h: float  # s
     given: dict[str, float]  # parameters that differ from their start values
     follows: dict[str, str] = field(default_factory=dict)  # parameter -> the one whose value it takes where not given
     ends: tuple[str, ...] = ()
     judges: tuple[str, ...] = ()
     plot: tuple[str | list[str], ...] = ()
     exchange: str = "derivatives"
-    h: float = 0.001  # s
     grid: float | None = None  # s, of the table
     positive: tuple[str, ...] = ()  # parameters that have to be above zero
     holds: tuple[str, ...] = ()  # parameters of which its closed forms take any value
@@ -103,7 +103,8 @@ def manoeuvres(vehicle: str) -> dict[str, Manoeuvre]:
     found = {}
     for name, of in file(vehicle).get("manoeuvre", {}).items():
         given = {n: number(n, str(x), every(vehicle)[n].unit) for n, x in of.get("given", {}).items()}
-        found[name] = Manoeuvre(vehicle, name, **file(vehicle).get("how", {}) | of | {"given": given})
+        step = {"h": every(vehicle)["h"].start} if "h" in every(vehicle) else {}
+        found[name] = Manoeuvre(vehicle, name, **step | file(vehicle).get("how", {}) | of | {"given": given})
     return found
 
 

@@ -23,7 +23,7 @@ from .options import EXAMPLES, ROAD, Manoeuvre, file
 Fmus = dict[str, Path]
 Table = dict[str, np.ndarray]
 DRY_ROAD = 1.0  # friction coefficient of tyres on dry asphalt, about
-STEPS = (0.002, 0.001, 0.0005)  # s
+STEPS = (0.01, 0.005, 0.0025)  # s, of which errors show orders
 Errors = dict[str, dict[float, float]]  # relative to the range: by exchange and communication step
 
 
@@ -95,15 +95,18 @@ class Vehicle:
         return [tuple((part, n.removesuffix(f"_{part}")) for part in ends) for ends, names in rows for n in names]
 
     def drive(
-        self, fmus: Fmus, of: Manoeuvre, h: float = 1e-3, exchange: str = "derivatives", grid: float = 0.01, **how: bool
+        self, fmus: Fmus, of: Manoeuvre, h: float = 0.0, exchange: str = "", grid: float = 0.0, **how: bool
     ) -> Run:
-        """The co-simulation, recorded every `grid`, or every step, to its end or to where a component ends it; with the
-        columns that `complete` adds."""
+        """The co-simulation, by the manoeuvre's own step and exchange unless others are given, to its end or to where a
+        component ends it; recorded every `grid`, every second step unless given, with the columns that `complete`
+        adds."""
+        h, exchange = h or of.h, exchange or of.exchange
+        every = max(1, round((grid or of.grid or 2 * h) / h))
         components, rows, ending = self.parts(fmus, of), [], None
         with loaded(*components):
             master = Master(components, self.connections)
             try:
-                for t in master.steps(of.stop, h, exchange, max(1, round(grid / h)), **how):
+                for t in master.steps(of.stop, h, exchange, every, **how):
                     rows.append([t, *master.read(self.record)])
             except Ended as end:
                 ending = end
