@@ -55,7 +55,8 @@ def cases(report: Report) -> dict[str, object]:
     rows = pd.DataFrame(rows).reindex(columns=[*COLUMNS, *JUDGES, *(f"{judge}: floor" for judge in JUDGES)])
     faults = rows[~rows["as expected"]]
     found = {"sweep": rows, "faults": faults}
-    found["loose"] = [{"case": str(c), "needs": c.loosest, "why": c.remark} for c in chosen if c.loosest < 1e-4]
+    loose = [(str(case), case.loosest, case.remark) for case in chosen if case.loosest < 1e-4]
+    found["loose"] = pd.DataFrame(loose, columns=["case", "needs", "why"])
     return found | {"cases": len(chosen), "faults_found": len(faults)}
 
 
