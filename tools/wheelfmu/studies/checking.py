@@ -43,10 +43,9 @@ def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int
         if there.any():
             error[wheel] = by_instant(rows[there], truth[there]).max()
             shift[wheel] = runs[0]["end_time"][k] - runs[1]["end_time"][k]
-    columns = {"check_error": (error, "1", ERROR), "check_shift": (shift, "s", SHIFT)}
     about = {
-        name: ([*axes.sizes], values.reshape(shape), {"units": unit, "description": text})
-        for name, (values, unit, text) in columns.items()
+        "check_error": ([*axes.sizes], error.reshape(shape), {"units": "1", "description": ERROR}),
+        "check_shift": ([*axes.sizes], shift.reshape(shape), {"units": "s", "description": SHIFT}),
     }
     xr.Dataset(about, attrs=results.attrs).to_zarr(place, mode="a", consolidated=False, zarr_format=3)
     found, late = error[np.isfinite(error)], np.abs(shift[np.isfinite(shift)])

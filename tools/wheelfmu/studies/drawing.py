@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
+from scipy.spatial import KDTree
 
 from wheelfmu.diagrams import style
 from wheelfmu.fmu.values import scale
@@ -43,19 +44,17 @@ def critical_spin(wheel: Mapping[str, float]) -> float:
 
 def label_regions(ax: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, text: str) -> None:
     """A word in the middle of a region of a map, which is also its widest place."""
-    if inside.mean() > LEAST:
-        shares = ax.transAxes.inverted().transform(ax.transData.transform(np.column_stack([x.ravel(), y.ravel()])))
-        found, rest = shares[inside.ravel()], np.concatenate([shares[~inside.ravel()], [[2, 2]]])
-        apart = np.hypot(*(found[:, None] - rest[None, :: max(1, len(rest) // 2000)]).transpose(2, 0, 1)).min(axis=1)
-        apart = np.minimum(apart, np.minimum(found, 1 - found).min(axis=1))
-        place = found[int(np.argmax(apart))]
-        look: style.Look = {"color": "white", "ha": "center", "va": "center", "fontsize": 8, "linespacing": 0.9}
-        narrow = apart.max() < NARROW
-        if narrow:  # its wheels stand at the frame, and it ends half-way to the next ones
-            text, place = text, np.array([place[0] + (rest[:, 0].min() - place[0]) / 4, 0.5])
-        else:
-            text = text.replace(" ", "\n")
-        ax.text(float(place[0]), float(place[1]), text, rotation=90 * narrow, transform=ax.transAxes, **look)
+    if inside.mean() <= LEAST:
+        return
+    shares = ax.transAxes.inverted().transform(ax.transData.transform(np.column_stack([x.ravel(), y.ravel()])))
+    found, rest = shares[inside.ravel()], np.concatenate([shares[~inside.ravel()], [[2, 2]]])
+    apart = np.minimum(KDTree(rest).query(found)[0], np.minimum(found, 1 - found).min(axis=1))
+    (across, up), narrow = found[int(np.argmax(apart))], apart.max() < NARROW
+    if narrow:  # its wheels stand at the frame, and it ends half-way to the next ones
+        across, up = across + (rest[:, 0].min() - across) / 4, 0.5
+    look: style.Look = {"color": "white", "ha": "center", "va": "center", "fontsize": 8, "linespacing": 0.9}
+    words = text if narrow else text.replace(" ", "\n")
+    ax.text(float(across), float(up), words, rotation=90 * narrow, transform=ax.transAxes, **look)
 
 
 def two_maps(
