@@ -112,15 +112,6 @@ def test_a_road_without_a_limit_warns_once_where_rolling_requires_a_coefficient_
     assert grip_warnings(braked(wheel(), 0.3, h, mu_max=3.0)) == []
 
 
-def test_a_state_from_before_the_warning_warns_again_and_one_from_after_does_not(wheel):
-    before, after = (braked(wheel(), until, 0.01).serialized() for until in (0.15, 0.25))
-    for blob, count in ((before, 1), (after, 0)):
-        w = wheel().back(blob)
-        w.take_messages()
-        w.give({"M_brake": (FULL + 30.0,)}).by(0.1).by(0.1)
-        assert len(grip_warnings(w)) == count
-
-
 def onto(w: FMU2Wheel, mu_max: float, before: float) -> FMU2Wheel:
     """A wheel that requires 0.5 rolls onto another road after 0.25 s."""
     return w.start(mu_max=before, **ROLLING).put(M_brake=FULL / 2).to(0.25).put(mu_max=mu_max)
