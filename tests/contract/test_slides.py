@@ -1,4 +1,4 @@
-"""What a master changes and reads while the wheel slides: the road, the brake, states of two sizes, start times."""
+"""What a master changes and reads while the wheel slides: the road, the brake, states of two sizes."""
 
 import resource
 from ctypes import byref
@@ -13,7 +13,6 @@ from wheelfmu.truth.sliding import ROAD, UPRIGHT
 
 WEIGHT, g = 20 * 9.81, 9.81
 LOCKED = {**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3}
-THROWN = {**ROAD, "slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0, "s": 0.01}
 
 
 def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> None:
