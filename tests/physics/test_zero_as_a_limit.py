@@ -208,7 +208,9 @@ TIMES = np.linspace(0.0, 0.4, 5)
 
 @pytest.mark.parametrize("case", BOUNDED)
 def test_next_to_zero_the_motion_changes_by_as_much_as_the_quantity(library: Library, case: str) -> None:
-    """Linearly down to where the tolerance counts; a branch for zero that is another motion would stay behind."""
+    """Linearly down to where the tolerance counts: a branch for zero that is another motion would stay behind, one that
+    takes what is small for zero would not move.
+    """
     start, name = BOUNDED[case]
     start = {key: value for key, value in start.items() if key != name}
 
@@ -222,6 +224,8 @@ def test_next_to_zero_the_motion_changes_by_as_much_as_the_quantity(library: Lib
     beyond(slope, 1e-4, "change over the quantity")
     for x in (1e-6, 1e-8, 1e-10, 1e-12):
         within(moved[x], 3 * slope * x + 1e-9, f"change by {x:g}")
+        if (linear := moved[1e-4] / 1e-4 * x) > 1e-8:
+            beyond(moved[x], 0.3 * linear, f"change by {x:g}")
 
 
 STEERED: Values = {**CARRIED, "psi_dot_guide": 0.8, "theta_dot_guide": -0.5}
