@@ -26,7 +26,10 @@ RUNS = sorted(line for line in PRINTED if "--help" not in line)
 ROWS = csv.DictReader(Path(__file__).with_name("command_lines.csv").read_text().splitlines()[1:])
 CASES = {line: {"line": line, "status": "0", "said": "", "unsaid": "Failed"} for line in RUNS}
 CASES |= {row["line"]: row for row in ROWS}
-PACKAGES = sorted(set(re.findall(r"run_package.py fmpy results/examples/(\S+) ([^`\n]+)", TEXT)))
+PACKAGE = re.compile(
+    r"^package=results/examples/(\S+)\n.*?run_package.py \w+ \$package ([^\n]+)", re.DOTALL | re.MULTILINE
+)
+PACKAGES = PACKAGE.findall(TEXT)
 
 
 def reads(line: str) -> subprocess.CompletedProcess:
