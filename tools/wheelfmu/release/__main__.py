@@ -72,7 +72,3 @@ def main() -> None:
     step("done")
     print("What was run and what was only built: docs/results/platforms.md.")
     folder.publish(released, ROOT / "build" / "site")
-
-
-if __name__ == "__main__":
-    main()
