@@ -228,8 +228,8 @@ class Study:
         Lengths are in proportion to R = r_0 + r, times to sqrt(R), masses to m. Fault if it sets such a parameter.
         """
         body = {n: x for n, x in preset(wheel).items() if not (self.body and n in MOMENTS)}
-        factor, slower, given = factors(body), scale(body, s=1), self.varied | self.values
-        if both := sorted({*body} & {*given} - {"phi_dot_start"}):
+        factor, slower, given = factors(body), scale(body, s=1), {*self.varied, *self.values}
+        if both := sorted({*body} & given - {"phi_dot_start"}):
             raise Fault(f"The study has values of {', '.join(both)}, which are those of the wheel {wheel}.")
 
         def similar(columns: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:
@@ -314,7 +314,8 @@ class Study:
 
     def starts(self, variables: Mapping[str, Variable]) -> Iterator[dict[str, float]]:
         """The parameters with which wheels start; those that vary are mass, size and moments alone."""
-        same = {name: v.preset for name, v in variables.items() if v.causality == "parameter"} | self.values
+        presets = {name: v.preset for name, v in variables.items() if v.causality == "parameter"}
+        same = {**presets, **self.values}
         varied = {name: xs for name, xs in self.varied.items() if name in (*SIZE, *MOMENTS)}
         for xs in zip(*varied.values(), strict=True) if self.list and varied else product(*varied.values()):
             own = same | dict(zip(varied, xs, strict=True))

@@ -83,7 +83,7 @@ class Instance:
             getattr(self.fmu, f"set{kind}")(references, [NUMBERS[kind](values[name]) for name in names])
 
     def get(self, names: tuple[str, ...]) -> dict[str, float]:
-        found = {}
+        found: dict[str, float] = {}
         for kind, mine, references in self.typed(names):
             found |= zip(mine, getattr(self.fmu, f"get{kind}")(references), strict=True)
         return found
