@@ -96,6 +96,7 @@ def no_states(w: FMU2Wheel) -> list[fmi2FMUstate]:
 def test_a_pointer_to_something_else_is_refused_as_a_state_is_not_freed_and_can_take_one(wheel):
     w, other = wheel().start(s=0.03).to(0.5), wheel().start(s=0.03).to(0.5)
     blob, size, buffer = w.serialized(), c_size_t(), bytes(1 << 17)
+    w.take_messages()
     for state in [*no_states(w), *no_states(other)]:
         value = state.value
         answers = [w.ask("SetFMUstate", state), w.ask("SerializedFMUstateSize", state, byref(size))]
