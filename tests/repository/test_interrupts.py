@@ -51,7 +51,7 @@ def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[
 
 def unfinished() -> set[str]:
     """Folders of results that are being written."""
-    return {path.name for path in (ROOT / "results").glob(".new-*")}
+    return {path.name for path in (ROOT / "results").rglob(".new-*")}
 
 
 @pytest.mark.parametrize(("line", "until", "delay"), CASES)

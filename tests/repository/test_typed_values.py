@@ -322,3 +322,13 @@ def test_only_one_process_at_a_time_uses_a_place(tmp_path: Path) -> None:
     assert first[1] <= second[0]
     first, second = spans("a", "b")
     assert second[0] < first[1]
+
+
+def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None:
+    program = "import os, sys; from wheelfmu.fmu.outputs import new_folder; from pathlib import Path\n"
+    program += (
+        "with new_folder(Path(sys.argv[1])) as new: (new / 'part').touch(); os.kill(os.getpid(), 9 * len(sys.argv[2:]))"
+    )
+    for words, left in ((["killed"], 1), ([], 0)):
+        subprocess.run([sys.executable, "-c", program, tmp_path, *words], check=False)
+        assert len([*tmp_path.iterdir()]) == left

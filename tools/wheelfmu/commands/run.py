@@ -40,11 +40,10 @@ import sys
 from itertools import islice
 from pathlib import Path
 from subprocess import PIPE, STDOUT
-from tempfile import TemporaryDirectory
 
 from wheelfmu.commands import build, processes
 from wheelfmu.diagrams import start_values
-from wheelfmu.fmu.outputs import alone, deliver
+from wheelfmu.fmu.outputs import deliver, new_folder
 from wheelfmu.fmu.paths import ROOT
 
 SCENES = {"free": "No rolling friction", "friction": "Rolling friction"}
@@ -111,9 +110,8 @@ def main(words: list[str]) -> None:
     build.build("release")
     results = ROOT / "results"
     results.mkdir(exist_ok=True)
-    with alone(results), TemporaryDirectory(dir=results, prefix=".new-") as place:
+    with new_folder(results) as new:
         deliver(ROOT / "build" / "release" / "wheel.fmu", ROOT / "wheel.fmu")
-        new = Path(place)
         simulate(new, words)
         for name, label in SCENES.items():
             for line in (new / f"{name}.log").read_text(errors="replace").splitlines():

@@ -58,6 +58,17 @@ def alone(place: Path) -> Iterator[None]:
         yield
 
 
+@contextmanager
+def new_folder(place: Path) -> Iterator[Path]:
+    """A folder that is empty at first and gone at the end, in a place that no other process uses; any left by a process
+    that was killed goes, too."""
+    with alone(place):
+        for left in place.glob(".new-*"):
+            shutil.rmtree(left)
+        with tempfile.TemporaryDirectory(dir=place, prefix=".new-") as new:
+            yield Path(new)
+
+
 def step(text: str) -> None:
     """A line above what a long command does next, with the seconds since it began."""
     print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)

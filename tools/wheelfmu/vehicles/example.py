@@ -8,9 +8,10 @@ import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
+
+from wheelfmu.fmu.outputs import new_folder
 
 from . import balance, car, options, suspended
 from .car_judges import demand, per_axle
@@ -81,10 +82,10 @@ def main(words: list[str]) -> int:
         asked = options.asked(*words)
         fmus, folder = build_all(), RESULTS / asked.vehicle
         folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(dir=RESULTS, prefix=".new-") as new:
-            passed = example(fmus, asked, Path(new))
+        with new_folder(folder) as new:
+            passed = example(fmus, asked, new)
             (folder / f"{asked.vehicle}.png").unlink(missing_ok=True)  # a run without rows has none
-            for file in Path(new).iterdir():
+            for file in new.iterdir():
                 file.replace(folder / file.name)
     except ValueError as reason:
         print(reason, file=sys.stderr)
