@@ -21,6 +21,7 @@ TURNED: Values = {"psi_start": 1e5 + 0.3, "phi_start": -1e7 - 0.2, "slope": 0.2,
 LEANING: Values = {"psi_start": 0.4, "theta_start": 1.2, "guided": True}
 SCENES: dict[str, Values] = {name: KINDS[name] for name in ("free", "general inertia, friction", "stiff law", "adams")}
 SCENES |= {
+    "regularized": {**GENERAL, "s": 0.02, "friction_law": 2, "omega_s": 2.0},
     "turned": {**GENERAL, **TURNED, "s": 0.02, "mu_max": 0.9},
     "turned, multibody": {**TURNED, "s": 0.02, "formulation": 3},
     "slides": {**GENERAL, **TURNED, **ROAD, **THROWN, "s": 0.01},
@@ -201,6 +202,8 @@ def test_asking_changes_nothing_in_model_exchange(library: Library, name: str) -
             w.vector("NominalsOfContinuousStates")
             assert (w.x() == other.x()).all() and w.bits() == other.bits()
             assert bytes(w.derivatives()) == bytes(other.derivatives())
+            assert bytes(w.indicators()) == bytes(other.indicators())
+            assert [a - b for a, b in zip(w.get(*counts), counted, strict=True)] == [1, 1]  # each counts what it asks
             assert w.event().valuesOfContinuousStatesChanged == other.event().valuesOfContinuousStatesChanged
         assert w.serialized() == other.serialized()
 

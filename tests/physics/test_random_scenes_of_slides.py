@@ -178,6 +178,45 @@ def test_a_ground_that_may_pull_does_so_from_the_instant_of_the_lift_off_on(libr
         within(abs(said[0] - fine), 3e-9, "instant of the pull, s")  # logged to the nanosecond
 
 
+LASTS = 1.2  # s
+
+
+def lowest(library: Library, values: Values, F_Z: float) -> tuple[float, float]:
+    """Instant and size, over the weight, of the least normal force of a wheel that the ground may hold: by a fine grid
+    about the least of a coarse one."""
+    times = np.linspace(0, LASTS, 601)
+    for width in (0.002, 1e-4, 5e-6):
+        own = {**values, "F_Z": F_Z, "keep_contact": True}
+        done = attempt(library, own, [0.0, *times[times > 0]], EXACT, Schedule())
+        t = float(done.t[np.argmin(done["lambda_3"])])
+        times = np.clip(np.linspace(t - width, t + width, 41), 0, LASTS)
+    return t, float(done["lambda_3"].min()) / (PAPER.m * PAPER.g)
+
+
+def test_a_lift_off_inside_a_step_is_met_however_short_it_is(library: Library) -> None:
+    """N falls below zero by a part of the weight and comes back; by as much above zero it does not."""
+    met = 0
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        values: Values = {"theta_start": random.uniform(0.9, 1.2), "psi_dot_start": random.uniform(1, 2), "method": 4}
+        values |= {"theta_dot_start": -random.uniform(0.5, 1.5), "phi_dot_start": -random.uniform(2, 5), "s": 0.005}
+        low, high = 0.0, 400.0
+        for _ in range(26):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if lowest(library, values, middle)[1] > 0 else (low, middle)
+        t, _ = lowest(library, values, low)
+        if not 0.05 < t < LASTS - 0.05:
+            continue
+        slope = lowest(library, values, low - 1)[1]  # by 1 N
+        for depth, tolerance in ((1e-3, 1e-5), (1e-4, 1e-6), (1e-5, 1e-8)):
+            for side, ends in ((1, True), (-1, False)):
+                own = {**values, "F_Z": low + side * depth / slope}
+                done = attempt(library, own, [0.0, LASTS], tolerance, Schedule())
+                assert (done.end is not None) == ends, (seed, side, tolerance)
+                met += ends
+    beyond(met, 5, "lift-offs")
+
+
 # ---- the reference ----
 
 

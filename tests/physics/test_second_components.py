@@ -202,3 +202,25 @@ def test_a_carrier_that_leans_and_one_that_steers_give_each_its_own_angle_its_de
             found = w.get(f"{name}_ddot")[0]
             within(abs(found - sum(k * c[k] * t ** (k - 1) for k in range(1, 4))), 1e-10, f"{name}_ddot")
     assert w.get("psi_dot")[0] != w.get("theta_dot")[0]
+
+
+REACTIONS = ("M_guide_1", "M_guide_2", "lambda_1", "lambda_3", "lambda_y")
+# d/dt at the first of seven points: coefficients of the one-sided difference of order 6.
+FORWARD = np.array([-49 / 20, 6, -15 / 2, 20 / 3, -15 / 4, 6 / 5, -1 / 6])
+
+
+@pytest.mark.parametrize("rate", ["psi_dot_guide", "theta_dot_guide"])
+def test_the_rates_of_the_reactions_follow_each_rate_of_the_carrier_in_all_its_derivatives(wheel, rate):
+    shape, h = {rate: (0.2, 0.5, -3.0, 8.0)}, 2.0**-9
+    w = wheel().start(tolerance=1e-12, guided=True, theta_start=1.2, phi_dot_start=-4.0, **GENERAL)
+    for t in (0.0, 0.2, 0.4):
+        if t:
+            w.give(shape, w.time).to(t)
+        found, blob = np.array(w.give(shape, t).rates(REACTIONS)()), w.serialized()
+        rows = [(w.back(blob).give(shape, t).to(t + k * h) if k else w).get(*REACTIONS) for k in range(len(FORWARD))]
+        w.back(blob)
+        difference = FORWARD @ np.array(rows) / h
+        within(np.abs(found - difference).max() / np.abs(difference).max(), 1e-6, f"rates at {t} s, relative")
+        other = np.array(w.give({rate: (*shape[rate][:3], 8.5)}, t).rates(REACTIONS)())
+        assert t == 0 or np.abs(found - other).max() / np.abs(difference).max() > 1e-4
+        w.back(blob)
