@@ -218,3 +218,22 @@ def test_counts_at_their_largest_stay_there_and_are_read_as_the_largest_integer(
     less = wheel().start().back(forged(wheel, with_words(body, found, **{counter: 1000}), mark))
     beyond_thousand = less.get(name)[0]
     assert 1000 <= beyond_thousand < 2000
+
+
+def test_instants_of_a_history_that_are_out_of_their_order_are_refused_and_so_is_another_size_in_the_header(
+    wheel, mark
+):
+    body, found = saved(wheel, "DOP853")
+    start, end = (struct.unpack("<d", struct.pack("<Q", body[place_of(found, name)]))[0] for name in ("start", "end"))
+    w = wheel().start()
+    for wrong in (
+        {"end": start - 1e-9},
+        {"known_until": end + 1e-9},
+        {"known_until": start - 1e-9},
+        {"first_stop": start},
+    ):
+        assert w.restore(forged(wheel, with_words(body, found, **wrong), mark)) == ERROR and w.said() == FORGED, wrong
+    sound = forged(wheel, body, mark)
+    for size in (0, len(sound) - 8, len(sound) + 8):
+        assert w.restore(sound[:8] + struct.pack("<Q", size) + sound[16:]) == ERROR and "damaged" in w.said()
+    assert w.restore(sound) == OK

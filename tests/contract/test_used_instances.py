@@ -152,10 +152,10 @@ NEXT = KINDS | BASES | {"at rest": AT_REST, "pulled": PULLED, "pulled, friction"
 
 
 def later(w: FMU2Wheel) -> list[object]:
-    """What follows a state: under a torque that makes a wheel slide if it can, and without it again."""
+    """What follows a state: alone, under a torque that makes a wheel slide if it can, and without it again."""
     w.take_messages()
     seen: list[object] = [w.bits(), w.serialized()]
-    for t, torque in ((0.8, -30.0), (0.9, 0.0), (1.3, 1.0)):
+    for t, torque in ((0.7, 0.0), (0.8, -30.0), (0.9, 0.0), (1.3, 1.0)):
         seen += [w.put(M_3=torque).step_to(t), w.bits(), w.serialized()]
         if seen[-3] != OK:
             break

@@ -169,6 +169,8 @@ def test_each_input_alone_in_each_of_its_derivatives_does_the_work_of_its_power(
             work, moved = work + part, moved + abs(part)
         w.give({load: tuple(shape)}, w.time).to(float(end))
     within(abs(w.get("E")[0] - first - work), 1e-8, "energy off the work, J")
+    kept = w.get(load)
+    assert w.by(0.02).get(load) == w.by(0.02).get(load) == kept  # a derivative holds for one step
     beyond(moved, 1e-3, "work, J")
 
 
