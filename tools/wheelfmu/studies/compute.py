@@ -7,13 +7,15 @@ reach the store; else the results come back, and the caller writes them.
 import hashlib
 import json
 import math
+import signal
 import sys
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
+from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
 
 import dask
@@ -21,6 +23,7 @@ import numpy as np
 import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
+from dask.system import CPU_COUNT
 from distributed import Client, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
@@ -41,8 +44,6 @@ BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as wo
 PIECES = 16  # a chunk during which a worker died is divided into so many
 PATIENCE = 1800  # s for the first worker to appear, on a loaded machine or in a cluster's queue
 ANSWER = 300  # s for a scheduler to answer; the address may be wrong
-# Workers that a LocalCluster starts ignore Ctrl-C, which is for the caller; Dask runs this text in each of them.
-DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 
 
 def run(
@@ -181,6 +182,17 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 
 
 @contextmanager
+def deaf() -> Iterator[None]:
+    """Processes that are started by what is made here never receive Ctrl-C, which is for the caller: it has to wait."""
+    ensure_running()  # of a first process it would end the waiting
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
 def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     """A LocalCluster with one thread per process."""
     options = {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
@@ -188,8 +200,12 @@ def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     options |= {"distributed.admin.tick.interval": "1s", "distributed.admin.system-monitor.interval": "10s"}
     # A nanny restarts a worker that died. LocalCluster would close it for good if, this long after a death, it happened
     # to be starting again after another one.
-    options |= {"distributed.deploy.lost-worker-timeout": "1000 hours", "distributed.worker.preload": [DEAF]}
+    options |= {"distributed.deploy.lost-worker-timeout": "1000 hours"}
     # On a loaded machine a worker logs an error where the cluster closes during its heartbeat.
-    processes = {"n_workers": workers, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "CRITICAL"}
-    with dask.config.set(options), LocalCluster(**processes, dashboard_address=":0") as local:
+    processes = {"n_workers": 0, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "CRITICAL"}
+    with dask.config.set(options), ExitStack() as stack:
+        with deaf():
+            local = stack.enter_context(LocalCluster(**processes, dashboard_address=":0"))
+        local.scale(workers or CPU_COUNT)
+        local.wait_for_workers(workers or CPU_COUNT, timeout=PATIENCE)
         yield local
