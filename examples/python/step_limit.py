@@ -4,6 +4,9 @@ A link of stiffness k and damping c acts on one relative displacement, for examp
 up on one wheel and on one body, so with all of them in K and C, and the inertias in M, a step h is stable if the motion
 over one step with held forces decays: h < 2 / lambda_max(M^-1 C), and below what the stiffness allows.
 
+A guided wheel that rolls goes where it heads: sideways at v psi if its carrier follows a body's yaw angle psi. With
+weakly damped lateral links that can lower the limit; at a high speed v no step is stable then, nor the vehicle itself.
+
 python step_limit.py prints two wheels on one body, rolling and sliding.
 """
 
@@ -17,20 +20,25 @@ class Wheel:
     """An upright wheel that heads along X. `slides`: locked or spinning, so friction does not follow the motion."""
 
     slides: bool = False
+    guided: bool = False
+    v: float = 0.0  # m/s
+    follows: str = ""  # the body, of yaw, whose heading the carrier gives to the wheel; else it keeps its own
     m: float = 20.0
     J_x: float = 0.9
     J_z: float = 1.8
     R: float = 0.35  # r_0 + r
 
     def inertias(self):
-        """By degree of freedom. A rolling wheel has three: along X (with its spin), lean (with Y), turn."""
+        """By degree of freedom. Rolling: along X (with its spin), lean (with Y), turn; guided, the first alone."""
         if self.slides:
-            return {"X": self.m, "Y": self.m, "spin": self.J_z, "lean": self.J_x, "turn": self.J_x}
-        return {"X": self.m + self.J_z / self.R**2, "lean": self.J_x + self.m * self.R**2, "turn": self.J_x}
+            path, lean = {"X": self.m, "Y": self.m, "spin": self.J_z}, self.J_x
+        else:
+            path, lean = {"X": self.m + self.J_z / self.R**2}, self.J_x + self.m * self.R**2
+        return path if self.guided else path | {"lean": lean, "turn": self.J_x}
 
     def moves(self, direction):
         """The degree of freedom that a direction (X, Y, spin, lean or turn) is, and its ratio."""
-        rolls = {"spin": ("X", -1 / self.R), "Y": ("lean", -self.R)}
+        rolls = {"spin": ("X", -1 / self.R), "Y": ("track", 1.0) if self.guided else ("lean", -self.R)}
         return (direction, 1.0) if self.slides else rolls.get(direction, (direction, 1.0))
 
 
@@ -39,7 +47,8 @@ def step_limit(wheels, bodies, links):
     degree of freedom each. `links`: (k, c, first end, second end). An end is (wheel, direction), a body, None for the
     ground, or {body: ratio, ...} where it moves with several, as on a body that moves and yaws."""
     inertia = {(name, dof): J for name, wheel in wheels.items() for dof, J in wheel.inertias().items()} | bodies
-    place = {name: i for i, name in enumerate(inertia)}
+    tracks = [(name, "track") for name, wheel in wheels.items() if wheel.guided and not wheel.slides]
+    place = {name: i for i, name in enumerate([*inertia, *tracks])}
     K, C = np.zeros((2, len(place), len(place)))
     for k, c, *ends in links:
         row = np.zeros(len(place))
@@ -50,17 +59,22 @@ def step_limit(wheels, bodies, links):
             for name, ratio in (end if isinstance(end, dict) else {end: 1.0} if end else {}).items():
                 row[place[name]] += sign * ratio
         K, C = K + k * np.outer(row, row), C + c * np.outer(row, row)
-    M = np.diag([*inertia.values()])
-    K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
-    zero, identity = np.zeros_like(K), np.eye(len(place))
-    rates = np.linalg.eigvals(np.block([[zero, identity], [-K, -C]]))  # of the motion itself, 1/s
+    n, M = len(inertia), np.array([*inertia.values()])[:, None]
+    K, C, E = K[:n] / M, C[:n] / M, np.eye(len(place), n)
+    heads = np.zeros((len(place), len(place)))  # x' = E v + heads x: a track has no inertia, it follows a heading
+    for track in tracks:
+        if body := wheels[track[0]].follows:
+            heads[place[track], place[body]] = wheels[track[0]].v
+    K, C, identity = K + C @ heads, C @ E, np.eye(n)
+    rates = np.linalg.eigvals(np.block([[heads, E], [-K, -C]]))  # of the motion itself, 1/s
     size = np.abs(rates)
     if np.any((size > 1e-6 * size.max()) & (rates.real > -1e-9 * size)):
         return 0.0  # something swings undamped
 
     def grows(h):
-        """Over one step of h: x + h v + h^2 a / 2, v + h a, with a = -K x - C v held."""
-        step = np.block([[identity - h**2 / 2 * K, h * identity - h**2 / 2 * C], [-h * K, identity - h * C]])
+        """Over one step of h: x + h x' + h^2 x'' / 2, v + h a, with a = -K x - C v held; a heading turns evenly."""
+        x = [np.eye(len(place)) + h * heads - h**2 / 2 * E @ K, h * E + h**2 / 2 * (heads @ E - E @ C)]
+        step = np.block([x, [-h * K, identity - h * C]])
         return np.abs(np.linalg.eigvals(step)).max() > 1 + 1e-7  # a double 1, free motion, is rounded by 1e-8
 
     stable, unstable = 0.0, 2 / np.linalg.eigvals(C).real.max()

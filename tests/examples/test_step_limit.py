@@ -6,11 +6,13 @@ exactly under held forces. SI.
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.util import module_from_spec, spec_from_file_location
 from math import pi
 
 import numpy as np
 import pytest
+from support.bounds import within
 
 from wheelfmu.fmu.driver import OK, FMU2Wheel
 from wheelfmu.fmu.paths import ROOT
@@ -33,8 +35,17 @@ SLIDES = {**GUIDED, "mu_max": 0.3, "mu_slide": 0.3, "slip_x_start": 150.0}
 ROLLS, FOUR = {"wheel": Wheel()}, {name: Wheel() for name in ("fl", "fr", "rl", "rr")}
 SLIDING = {"wheel": Wheel(slides=True)}
 TWO = {name: Wheel() for name in ("left", "right")}
+AT_SPEED = 12.0  # m/s
+AXLES = {name: Wheel(guided=True, v=AT_SPEED, follows="yaw") for name in ("front", "rear")}
 STEPS, WINDOW = 250, 20
 BUSHING, SHAFT = (2e5, 4e3), (3e3, 40.0)
+
+
+def steered(c: float) -> tuple:
+    """Start values, wheels, bodies and links of a car in one track, whose wheels head where its body does."""
+    arms = {"front": {"body": 1.0, "yaw": 1.2}, "rear": {"body": 1.0, "yaw": -1.4}}
+    start = {**GUIDED, "phi_dot_start": -AT_SPEED / Wheel.R}
+    return start, AXLES, {"body": 1200.0, "yaw": 1900.0}, [(2e5, c, (name, "Y"), end) for name, end in arms.items()]
 
 
 def free_wheel(name: str) -> list:
@@ -74,6 +85,7 @@ COUPLINGS = {
         {"body": 300.0, "yaw": 60.0},
         [(*BUSHING, (name, "X"), {"body": 1.0, "yaw": b}) for name, b in (("left", -0.8), ("right", 0.6))],
     ),
+    "a car at speed, across": steered(2e3),
 }
 
 
@@ -81,7 +93,7 @@ class Coupled:
     """The coupling, and its motion under held forces."""
 
     def __init__(self, new, start, wheels, bodies, links, kick: float) -> None:
-        self.links, self.bodies = links, bodies
+        self.links, self.bodies, self.properties = links, bodies, wheels
         self.wheels: dict[str, FMU2Wheel] = {name: new().start(**start) for name in wheels}
         self.x, self.v = dict.fromkeys(bodies, 0.0), {name: kick * (i + 1) for i, name in enumerate(bodies)}
         self.origin = {end: self.read(end)[0] for _, _, *ends in links for end in ends if self.of_wheel(end)}
@@ -113,6 +125,10 @@ class Coupled:
                 else:
                     for body, ratio in (end if isinstance(end, dict) else {end: 1.0}).items():
                         on_body[body] += ratio * force
+        for name, wheel in self.wheels.items():
+            if body := self.properties[name].follows:
+                heading = self.x[body] + h * self.v[body]  # before this step's forces
+                assert wheel.set(psi_dot_guide=(heading - wheel.get("psi")[0]) / h) == OK
         for (name, load), force in on_wheel.items():
             assert self.wheels[name].set(**{load: force}) == OK
         for name, force in on_body.items():
@@ -150,3 +166,14 @@ def test_couplings_are_stable_below_the_limit_of_their_step_and_diverge_above_it
 
 def test_a_held_link_without_damping_has_no_stable_step():
     assert step_limit({}, {"body": 300.0}, [(2e5, 0.0, "body", None)]) == 0
+
+
+def test_speed_lowers_the_limit_of_a_car_whose_links_across_are_weakly_damped():
+    def limit(v: float, c: float) -> float:
+        _, wheels, bodies, links = steered(c)
+        return step_limit({name: replace(wheel, v=v) for name, wheel in wheels.items()}, bodies, links)
+
+    weak, strong = ([limit(v, c) for v in (0.0, AT_SPEED)] for c in (2e3, 2e4))
+    assert weak[1] < 0.8 * weak[0]
+    within(abs(strong[1] / strong[0] - 1), 0.01, "change of the limit by the speed under strong damping")
+    assert limit(80.0, 2e3) == 0  # nor is the car itself stable
