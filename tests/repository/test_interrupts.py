@@ -1,6 +1,10 @@
-"""Ctrl-C on a terminal ends a command and all that it has started, with status 130 and without a false word."""
+"""Ctrl-C on a terminal ends a command and all that it has started, with status 130 and without a false word. What a
+killed build leaves spoils none."""
 
 import os
+import signal
+import subprocess
+import sys
 import time
 from io import StringIO
 from pathlib import Path
@@ -67,3 +71,25 @@ def test_a_command_ends_whole_at_ctrl_c(tmp_path: Path, line: str, until: str, d
         time.sleep(0.2)
         left &= unfinished()
     assert not left
+
+
+def test_what_a_killed_build_has_begun_is_made_again(tmp_path: Path) -> None:
+    rule = """
+cmake_minimum_required(VERSION 3.25)
+project(parts NONE)
+foreach(part 1 2)
+  add_custom_command(OUTPUT ${part} COMMAND sh ${CMAKE_SOURCE_DIR}/make.sh ${part})
+endforeach()
+add_custom_command(OUTPUT 2 DEPENDS 1 APPEND)
+add_custom_target(all_parts ALL DEPENDS 2)
+"""
+    (tmp_path / "CMakeLists.txt").write_text(rule)
+    (tmp_path / "make.sh").write_text("printf 'a pa' >$1; [ $1 = 1 ] || [ -e ../repaired ] || kill -9 0; echo rt >>$1")
+    program = "from pathlib import Path; from wheelfmu.fmu.building import build\n"
+    program += f"build('parts', Path({str(tmp_path / 'built')!r}), Path({str(tmp_path)!r}), [])"
+    command, built = [sys.executable, "-c", program], tmp_path / "built"
+    assert subprocess.run(command, start_new_session=True, check=False).returncode == -signal.SIGKILL
+    assert [(built / part).read_text() for part in "12"] == ["a part\n", "a pa"]
+    (tmp_path / "repaired").touch()
+    subprocess.run(command, check=True)
+    assert [(built / part).read_text() for part in "12"] == ["a part\n", "a part\n"]

@@ -1,4 +1,4 @@
-"""Builds by CMake, of whatever generator the variable CMAKE_GENERATOR names: a folder by one process at a time.
+"""Builds by CMake, by makefiles whatever the variable CMAKE_GENERATOR names: a folder by one process at a time.
 
 What stands at the head is of the standard library alone.
 """
@@ -8,7 +8,8 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from ctypes import CDLL
 from pathlib import Path
 from subprocess import PIPE, STDOUT
@@ -31,6 +32,21 @@ def without_stale_cache(folder: Path, source: Path, line: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
 
 
+@contextmanager
+def whole(folder: Path) -> Iterator[None]:
+    """A folder that is written to, to the end. What a process wrote that did not come to its end goes first: a file may
+    be cut short, and yet is newer than its sources."""
+    mark = folder / "unfinished"
+    if mark.exists():
+        begin = mark.stat().st_mtime_ns
+        for path in [path for path in folder.rglob("*") if path.is_file() and path != mark]:
+            if path.stat().st_mtime_ns >= begin:
+                path.unlink()
+    mark.touch()
+    yield
+    mark.unlink()
+
+
 def build(
     name: str, folder: Path, source: Path, configure: Iterable[object], building: Iterable[object] = (), stale: str = ""
 ) -> None:
@@ -44,7 +60,7 @@ def build(
         print(f"Building {name}.", flush=True)
     with alone(folder):
         without_stale_cache(folder, source, stale)
-        with log.open("w", encoding="utf-8") as file:
+        with whole(folder), log.open("w", encoding="utf-8") as file:
             done = all(succeeds(name, [str(word) for word in step], source, file) for step in (to_configure, to_build))
     if not done:
         print(*log.read_text(encoding="utf-8").splitlines()[-SHOWN:], sep="\n", file=sys.stderr)
@@ -70,8 +86,9 @@ def succeeds(name: str, words: list[str], place: Path, log: TextIO) -> bool:
 def build_target(name: str) -> Path:
     """Builds one of the programs for tests in the build under test, whose folder is returned."""
     folder = build_folder()
-    with alone(folder):
-        subprocess.run(["cmake", "--build", folder, "--target", name], check=True, capture_output=True)
+    with alone(folder), whole(folder):
+        done = subprocess.run(["cmake", "--build", folder, "--target", name], check=False, capture_output=True)
+    done.check_returncode()
     return folder
 
 
