@@ -36,19 +36,30 @@ def test_a_linked_environment_is_refused_and_keeps_its_files(checkout: Path, tmp
 
 
 def test_pip_alone_installs_the_lock_file_where_uv_cannot_be_installed(tmp_path: Path) -> None:
-    """Partner: the second set-up would fail, were anything installed again."""
+    """Partner: the second set-up would fail, were anything installed again. The third finds what a killed one leaves: a
+    package without its end."""
     copy, constraint = tmp_path / "copy", tmp_path / "no_uv.txt"
     copy.mkdir()
     copy_checkout(copy)
     lock = copy / "requirements.lock"
     lock.write_text("".join(re.findall(r"^(?:tabulate|uv)==.*\n(?: .*\n)+", lock.read_text(), re.MULTILINE)))
     constraint.write_text("uv<0\n")
-    for more, said in (({}, "Installing Python packages into .venv\n"), ({"PIP_NO_INDEX": "1"}, "")):
+
+    def set_up(**more: str) -> str:
         environment = os.environ | {"PIP_CONSTRAINT": str(constraint)} | more
         done = subprocess.run(["bash", "scripts/setup"], cwd=copy, env=environment, capture_output=True, text=True)
-        assert (done.returncode, done.stdout) == (0, said), done.stderr
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert (set_up(), set_up(PIP_NO_INDEX="1")) == ("Installing Python packages into .venv\n", "")
     programs = {path.name for path in (copy / ".venv" / "bin").iterdir()}
     assert "tabulate" in programs and "uv" not in programs
+    packages = "lib/*/site-packages"
+    for left in ("installed.lock", f"{packages}/tabulate-*/INSTALLER", f"{packages}/tabulate/__init__.py"):
+        (path,) = (copy / ".venv").glob(left)
+        path.unlink()
+    set_up()
+    assert path.exists()
 
 
 def test_lint_without_git_is_refused(checkout: Path) -> None:

@@ -8,7 +8,7 @@ from argparse import Namespace
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
 
-NEEDS = ("release", "site", "page")
+NEEDS = ("release",)
 
 
 def main(_given: Namespace) -> None:
