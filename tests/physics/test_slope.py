@@ -18,7 +18,6 @@ from wheelfmu.truth.reference import Wheel
 
 R, WEIGHT = 0.35, 20 * 9.81
 REST = {**UPRIGHT, "phi_dot_start": 0.0}
-DOWNHILL = {"slope_direction": pi}  # the road falls towards X
 
 
 @pytest.mark.parametrize("s", [0.01, 0.03])
