@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import fmi2FMUstate
 
-from wheelfmu.fmu.driver import ERROR, OK, FMU2Wheel
+from wheelfmu.fmu.driver import DISCARD, ERROR, OK, FMU2Wheel
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import KINDS
 
@@ -59,6 +59,26 @@ def test_a_state_is_reused_where_it_is_not_null(wheel):
     assert w.ask("SetFMUstate", early) == OK
     w.time = 0.0
     assert w.run([1.0]) == ahead
+
+
+def test_a_state_that_takes_a_shorter_one_is_no_longer_than_it(wheel):
+    """That of a run that is stepped through holds the solver's history, that of a new instance none."""
+    w, size = wheel().start(s=0.03).to(0.5), c_size_t()
+    state, long, fresh = w.snapshot(), len(w.serialized()), wheel().serialized()
+    assert w.reset() == w.ask("GetFMUstate", byref(state)) == w.ask("SerializedFMUstateSize", state, byref(size)) == OK
+    assert size.value == len(fresh) < long
+    assert w.start(s=0.03).ask("SetFMUstate", state) == OK and w.serialized() == fresh
+    w.free(state)
+
+
+def test_a_restored_instance_tells_its_faults_again(wheel):
+    w = wheel().initializing(m=-1.0, r_0=0.0)
+    assert w.get_one("tau")[0] == DISCARD and len(told := w.texts()) == 2
+    other = wheel().back(w.serialized())
+    for each in (w, other):
+        each.take_messages()
+        each.get_one("tau")
+    assert other.texts() == told and not w.texts()  # the partner: once for each instance
 
 
 def test_a_state_outlives_its_instance_and_is_freed_once(wheel):

@@ -133,6 +133,18 @@ def test_a_word_just_outside_the_bounds_of_its_field_is_refused(wheel, mark: int
     assert refused > 250
 
 
+@pytest.mark.parametrize("name", ["Adams", "multibody, BDF"])
+@pytest.mark.parametrize("field", ["steps", "end"])
+def test_a_history_whose_steps_lead_elsewhere_is_refused(wheel, mark: int, name: str, field: str) -> None:
+    """CVODE's steps since its last start are made again; they must end where the state says."""
+    body, found = saved(wheel, name)
+    place, step = place_of(found, field), -1 if field == "steps" else 1
+    forgery = (*body[:place], body[place] + step, *body[place + 1 :])
+    w = wheel().start(s=0.01)
+    assert w.restore(forged(wheel, forgery, mark)) == ERROR and w.said() == FORGED
+    assert w.restore(forged(wheel, body, mark)) == OK  # the partner
+
+
 # Whatever else the state says, these may have any value within their bounds.
 FREE = {"start_time", "stop_time", "tolerance", "derivatives", "news", "s, mu_max, mu_slide", "slope", "sigma"}
 FREE |= {"slope_direction", "origin", "polynomials", "t, last change", "grip due", "y", "transitions", "counted"}

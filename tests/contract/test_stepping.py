@@ -1,5 +1,7 @@
 """Communication points: the master's grid changes no bit of the result; times carry rounding; nonsense is refused."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
@@ -158,6 +160,15 @@ def test_the_smooth_method_needs_no_jacobian_and_only_a_stiff_scene_gets_one_by_
     assert counters(**{**values, "method": 2})["n_jac"] == 0 < counters(**{**values, "method": 3})["n_jac"]
     assert counters(**values)["n_jac"] == 0 or values == REGULARIZED
     assert counters(**STIFF)["n_jac"] > 0
+
+
+def test_each_start_of_bdf_counts_a_jacobian(wheel):
+    """Each load that jumps starts it anew."""
+    w, counts = wheel().start(s=0.03, method=3), []
+    for k in range(8):
+        counts.append(w.put(M_3=0.1 * k).by(0.1).get("n_jac", "n_restarts"))
+    assert min(later[0] - before[0] for before, later in pairwise(counts)) > 0
+    assert [later[1] - before[1] for before, later in pairwise(counts)] == [1] * 7  # the partner: they are starts
 
 
 @pytest.mark.parametrize("moments", [{"J_x": 0.7, "J_y": 1.2}, {"J_x": 0.9, "J_y": 0.9}], ids=["any J", "J_x = J_y"])

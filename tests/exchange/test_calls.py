@@ -185,6 +185,22 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         assert wheel.setTime(0.2) == ERROR
 
 
+@pytest.mark.parametrize(
+    ("theta", "F_Z", "ending"),
+    [(1.2, -9.0, "needs a friction"), (1.2, 500.0, "lifted off"), (0.0, 500.0, "lies flat"), (0.0, -9.0, "lies flat")],
+)
+def test_of_endings_at_one_instant_the_last_of_the_list_counts(library: Library, theta, F_Z, ending) -> None:
+    """Lost grip, lost contact, lying flat: each with all before it, where a wheel off the ground has no grip."""
+    with exchange(library, logging=True, mu_max=0.5) as wheel:
+        x = wheel.x()
+        x[STATES.index("theta")] = theta
+        wheel.place(0.1, x)
+        assert wheel.set(F_Y=500.0, F_Z=F_Z) == OK
+        lost = [event for event in ("lost_grip", "lost_contact", "lies_flat") if wheel.indicator(event) <= 0]
+        assert wheel.event().terminateSimulation and f"The wheel {ending}" in wheel.sentences[-1]
+        assert len(lost) >= ["needs a friction", "lifted off", "lies flat"].index(ending) + (F_Z > 0)
+
+
 # theta in rad, the largest rate in rad/s; flat ones fall on either side.
 FINITE = [(1.0, 10.0, -2.0, OK), (4.0, 10.0, 0.0, OK), (4.0, 10.0, -2.0, OK), (1.0, 1e200, -2.0, DISCARD)]
 
@@ -308,6 +324,14 @@ def test_nominal_values_are_the_scales_of_the_error(library: Library) -> None:
             nominals = wheel.vector("NominalsOfContinuousStates")
         assert (nominals > 0).all()
         assert nominals[:5] == pytest.approx([1.05, 1.05, 3, tilt, 3])
+
+
+def test_nominal_values_are_those_of_the_spin_reached(library: Library) -> None:
+    with exchange(library) as wheel, exchange(library, phi_dot_start=-100.0) as fast:
+        slow = wheel.vector("NominalsOfContinuousStates")
+        wheel.place(0.1, fast.x())
+        assert (wheel.vector("NominalsOfContinuousStates") == fast.vector("NominalsOfContinuousStates")).all()
+        assert (wheel.vector("NominalsOfContinuousStates") != slow).any()
 
 
 def test_nominal_rates_are_the_wheel_s_own_or_that_of_its_tilting_at_the_start_about_both_its_diameters(library):

@@ -27,6 +27,7 @@ REFUSALS: list[tuple[Values, str, Values]] = [
     ({"theta_start": -0.1}, f"theta_start = -0.1 rad: {STANDS}", {"theta_start": 3.1}),
     ({"theta_start": 0.0}, f"theta_start = 0 rad: {STANDS}", {"theta_start": 2e-7}),
     ({"theta_start": pi}, f"theta_start = 3.14159265 rad: {STANDS}", {"theta_start": 3.14159}),
+    ({"theta_start": 7.0}, f"theta_start = 7 rad: {STANDS}", {"theta_start": 0.7}),  # where its sine is above 0 again
     ({"phi_dot_start": nan}, f"phi_dot_start = nan: {NUMBER}", {"phi_dot_start": 0.0}),
     ({"formulation": 4}, "formulation = 4: it must be at most 3.", {"formulation": 3}),
     ({"friction_law": 0}, "friction_law = 0: it must be at least 1.", {"friction_law": 1}),
