@@ -179,7 +179,7 @@ export function scenes(parameters, steps) {
     ['Paper, no friction', free.plan],
     ['Paper, s = 0.03 m', friction.plan],
     ['Just stable', critical.kept, `${limit} faster, leans by half a degree and stays up.`],
-    ['Just unstable', critical.plan, `${limit} slower, leans as much and falls over.`],
+    ['Just unstable', critical.plan, `${limit} slower, leans as much, comes down and rises again.`],
     [
       'Thin disc', disc.plan,
       'No tube (r = 0), homogeneous: the rolling disc of the textbooks, low and wobbling like a coin.'
