@@ -1,4 +1,4 @@
-"""The map of fates: start angle theta against spin phi_dot, without and with rolling friction; 10 s each.
+"""The map of fates: start angle theta against spin phi_dot, without and with rolling resistance; 10 s each.
 
 `./scripts/study fates` runs it and draws the map; `--publish` writes the figure into docs/figures.
 """

@@ -1,4 +1,4 @@
-"""How long a wheel stays up: started at 89 degrees with four spins, for a rolling friction s from 0 to 0.1 m.
+"""How long a wheel stays up: started at 89 degrees with four spins, for a rolling resistance s from 0 to 0.1 m.
 
 `./scripts/study uptime` runs it and draws it; `--publish` writes the figure into docs/figures.
 It counts as up until it leans by more than 30 degrees. The spin of an upright wheel falls by s m g / (J_z + m R^2) per
@@ -47,7 +47,7 @@ def draw(small: xr.Dataset, stem: Path) -> Path:
         text = {"textcoords": "offset points", "va": "center", "color": colour}
         ax.annotate(f"{-spin:.3g} rad/s", (s[-1], times[-1]), xytext=(5, apart), **text)
     limits = scale(wheel, s=1) * np.array([0.2, 60.0])
-    ax.set(yscale="log", xlim=(0, s[-1]), ylim=limits, xlabel="coefficient of rolling friction $s$ [m]")
+    ax.set(yscale="log", xlim=(0, s[-1]), ylim=limits, xlabel="coefficient of rolling resistance $s$ [m]")
     ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.yaxis.set_major_formatter("{x:g}")
     ax.set_ylabel("time until it leans by 30° [s]")

@@ -1,4 +1,4 @@
-// When the rolling friction holds the wheel, and when it slides: stick phases and transitions, read off friction_mode
+// When the rolling resistance holds the wheel, and when it slides: stick phases and transitions, read off friction_mode
 // (or the sign of omega_z) and n_events, the wheel's own count of transitions.
 
 /** -1 or 1: sign of omega_z while it rolls; 0: omega_z is held at zero. */
