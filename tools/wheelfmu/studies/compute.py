@@ -17,6 +17,7 @@ from dataclasses import asdict, replace
 from functools import partial
 from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
+from typing import TypeAlias
 
 import dask
 import numpy as np
@@ -37,7 +38,7 @@ from .dataset import TITLE, axes_of, open_results, points, provenance, template
 from .plan import Status, Study, description
 from .worker import MARK, Region, Result, pack, run_chunk, write
 
-Workers = int | str | Cluster | None
+Workers: TypeAlias = int | str | Cluster | None
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
 BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
