@@ -143,6 +143,24 @@ def test_the_fmu_begins_a_slide_in_that_direction_and_goes_on(wheel) -> None:
     beyond(begun, 3, "slides that begin")
 
 
+def test_a_slip_that_turns_more_than_a_right_angle_off_the_force_of_rolling_is_found_to_either_side() -> None:
+    """Rolling resistance of many radii alone leads so far; without it every direction that is kept lies closer."""
+    sides = {s: [0, 0] for s in (0.0, 20.0)}
+    for s, found in sides.items():
+        for seed in range(60, 660):
+            scene, motion = first(np.random.default_rng(seed), False)
+            scene["wheel"]["s"] = s * scene["wheel"]["r_0"]
+            state = State(scene, motion)
+            f_X, f_Y = state.found.grip()
+            against = atan2(-f_Y, -f_X) - float(motion["psi"][0])
+            if not state.kept or min(abs(turned(chi - against)) for chi in state.kept) < 1.6:
+                continue
+            within(min(abs(turned(state.direction() - chi)) for chi in state.kept), 1e-9, "direction off, rad")
+            found[int(turned(state.kept[0] - against) > 0)] += 1
+    assert sides[0.0] == [0, 0]
+    beyond(min(sides[20.0]), 4, "states found to a side")
+
+
 # ---- little room ----
 
 

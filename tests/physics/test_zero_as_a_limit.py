@@ -228,6 +228,20 @@ def test_next_to_zero_the_motion_changes_by_as_much_as_the_quantity(library: Lib
             beyond(moved[x], 0.3 * linear, f"change by {x:g}")
 
 
+@pytest.mark.parametrize("order", range(4))
+@pytest.mark.parametrize("name", ["M_3", "F_X", "M_brake", "psi_dot_guide"])
+def test_however_small_its_one_coefficient_an_input_acts_throughout_a_long_step(wheel, name, order):
+    """Of a guided wheel: what it gains is the integral of the input."""
+    coefficient, t = 1e-11, 500.0
+    start = {**UPRIGHT, "guided": True, "phi_dot_start": -1.0 if name == "M_brake" else 0.0}
+    w = wheel().start(tolerance=1e-12, **start).give({name: ramp(coefficient, order)}).to(t)
+    spin, heading = w.get("omega_z", "psi")
+    gained = {"M_3": spin, "F_X": -spin / R, "M_brake": spin + 1.0, "psi_dot_guide": heading / INERTIA}[name] * INERTIA
+    expected = coefficient * t ** (order + 1) / (order + 1)
+    within(abs(gained - expected), 1e-9 * expected + 1e-11, "gained off the integral, SI")
+    beyond(expected, 4e-9, "integral, which a wheel that takes the input for none does not gain, SI")
+
+
 STEERED: Values = {**CARRIED, "psi_dot_guide": 0.8, "theta_dot_guide": -0.5}
 
 
