@@ -66,6 +66,15 @@ def test_no_number_at_an_axis_is_cut_off_and_minus_is_no_hyphen(live):
     assert any(text.startswith("−12") for text, _ in texts) and not any("-" in text for text, _ in texts)
 
 
+def test_the_spin_of_a_wheel_without_any_has_no_more_digits_than_that_of_one_with_some(live):
+    shown = []
+    for spin in (0, -1, -1e-5):
+        start(live, phi_dot_start=spin)
+        shown.append(len(live.evaluate("page.plots.curves[1].values.textContent")))
+    none, some, little = shown
+    assert none <= some < little
+
+
 def test_the_critical_spin_is_a_line_in_the_diagram_of_the_spin_where_it_is_seen(live):
     for spin, seen in ((-2.0, True), (-9.0, False)):
         start(live, phi_dot_start=spin)

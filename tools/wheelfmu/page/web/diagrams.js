@@ -152,7 +152,8 @@ class Diagram {
       const sketch = side ? this.sketch ?? [] : [];
       const [low, high] = extent([...points, ...sketch].flatMap((point) => (side ? point.slice(1) : point[0])));
       if (side && this.asks) return [0, 100];  // deg
-      return kept ? widened(kept[side], low, high) : bounds(low, high);
+      if (kept) return widened(kept[side], low, high);
+      return this.timed && low === 0 && high === 0 ? [-1, 1] : bounds(low, high);  // zero has no scale of its own
     });
     if (!this.kind.even) return;
     const scale = Math.max(...this.ranges.map(([low, high], i) => (high - low) / this.sizes[i]));
