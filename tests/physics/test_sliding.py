@@ -291,6 +291,24 @@ def test_a_slide_that_cannot_but_begin_in_a_jam_ends_there(
     within(abs(run.end - 0.0212237586), 1e-3 * tolerance + 1e-10, "instant of the jam, s")
 
 
+STOPPING = {"m": 11.17, "r_0": 0.4524, "r": 0.0, "J_x": 0.447, "J_y": 0.7382, "J_z": 0.5485, "s": 0.009347}
+STOPPING |= {"mu_max": 3.085, "mu_slide": 2.537, "psi_start": -2.477, "theta_start": 1.297, "phi_start": -0.5887}
+STOPPING |= {"psi_dot_start": 3.205, "theta_dot_start": -0.7487, "phi_dot_start": 11.91}
+STOPPING |= {"slip_x_start": -3.618, "slip_y_start": 3.002}
+
+
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-12])
+def test_a_jam_where_a_slip_is_about_to_end_is_a_jam(library: Library, tolerance: float, formulation: int) -> None:
+    """The slip falls below a millionth of its first size while the normal force grows without bound."""
+    scene = Scene(STOPPING, 0.2, Schedule(((0.0, {"M_1": 0.582, "F_X": 2.48}),)))
+    ended = scene.solved([0.0, 0.2]).ended
+    run = simulate(library, scene, [0.0, 0.2], tolerance, formulation=formulation)
+    assert ended and ended.kind == "jams" and run.end is not None and "jams" in str(run.ended)
+    within(abs(run.end - ended.time), 1e-9, "instant of the jam, s")
+    other = simulate(library, scene, [0.0, 0.2], tolerance, formulation=formulation, mu_slide=2.4)
+    beyond(abs((other.end or 0.2) - ended.time), 1e-6, "instant with less friction, s")
+
+
 @pytest.mark.parametrize(("start", "brake"), [
     ({"mu_max": 0.1, "mu_slide": 0.1, "s": 0.3, "omega_s": 1e-6}, 0.0),
     ({"mu_max": 0.4, "mu_slide": 0.3, "omega_s": 1e-4}, 1e3),
