@@ -67,6 +67,8 @@ def test_categories_can_be_switched_off_one_by_one_and_all_at_once(wheel):
     assert logged() == 0
     w.setDebugLogging(True, [])
     assert logged() == 1
+    w.setDebugLogging(False, ["logStatusError", "logStatusDiscard", "logStatusWarning"])
+    assert logged() == 0
 
 
 def test_percent_and_hash_signs_are_doubled_and_texts_stay_short_and_without_newline(wheel):

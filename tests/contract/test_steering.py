@@ -157,3 +157,13 @@ def test_both_rates_jump_together_in_whatever_order_they_are_set(library: Librar
                 w.put(**rates)
             found.append(w.get(*ANSWERS))
     assert found[0] == found[1] == found[2]
+
+
+@formulations
+@pytest.mark.parametrize("angle", ["psi", "theta"])
+def test_a_carrier_that_turns_about_one_axis_alone_stops(wheel, angle, formulation):
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=1.4, formulation=formulation)
+    w.put(**{f"{angle}_dot_guide": 0.5}).by(0.1)
+    assert w.get(f"{angle}_dot") == pytest.approx([0.5])  # the partner: it turns
+    before = w.put(**{f"{angle}_dot_guide": 0.0}).get(angle)
+    assert w.get(f"{angle}_dot") == [0] and w.by(0.1).get(f"{angle}_dot") == [0] and w.get(angle) == before
