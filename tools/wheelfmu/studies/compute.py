@@ -207,6 +207,7 @@ def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     with dask.config.set(options), ExitStack() as stack:
         with deaf():
             local = stack.enter_context(LocalCluster(**processes, dashboard_address=":0"))
-        local.scale(workers or CPU_COUNT)
-        local.wait_for_workers(workers or CPU_COUNT, timeout=PATIENCE)
+        count = workers or CPU_COUNT
+        local.scale(count)
+        local.wait_for_workers(count, timeout=PATIENCE)
         yield local
