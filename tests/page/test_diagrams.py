@@ -75,6 +75,12 @@ def test_the_spin_of_a_wheel_without_any_has_no_more_digits_than_that_of_one_wit
     assert none <= some < little
 
 
+def test_the_portrait_of_a_wheel_that_keeps_its_tilt_has_round_numbers(live):
+    start(live, theta_start=np.pi / 2, phi_dot_start=-20)
+    live.evaluate("page.plots.portrait.choose('phase')")
+    assert live.evaluate("page.plots.portrait.marks.map(([, text]) => text)") == ["−1.0", "−0.5", "0.0", "0.5", "1.0"]
+
+
 def test_the_critical_spin_is_a_line_in_the_diagram_of_the_spin_where_it_is_seen(live):
     for spin, seen in ((-2.0, True), (-9.0, False)):
         start(live, phi_dot_start=spin)

@@ -153,7 +153,8 @@ class Diagram {
       const [low, high] = extent([...points, ...sketch].flatMap((point) => (side ? point.slice(1) : point[0])));
       if (side && this.asks) return [0, 100];  // deg
       if (kept) return widened(kept[side], low, high);
-      return this.timed && low === 0 && high === 0 ? [-1, 1] : bounds(low, high);  // zero has no scale of its own
+      const flat = Math.max(-low, high) < 1e-9 && !this.kind.even;  // zero throughout, but for rounding, has no scale
+      return flat ? [-1, 1] : bounds(low, high);
     });
     if (!this.kind.even) return;
     const scale = Math.max(...this.ranges.map(([low, high], i) => (high - low) / this.sizes[i]));
