@@ -5,7 +5,8 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import DISCARD, DO_STEP_STATUS, ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
-from wheelfmu.truth.scenes import THETA_0
+from wheelfmu.truth.scenes import PAPER, THETA_0
+from wheelfmu.truth.sliding import gripping_torque
 
 DROP = {"theta_start": THETA_0, "phi_dot_start": 0.0}  # let go at rest
 LIFT = {"F_Z": 250.0}  # more than the weight
@@ -84,7 +85,7 @@ def test_a_wheel_off_the_ground_at_the_start_ends_there_however_soon_it_would_be
 
 
 ROLLING = {"theta_start": np.pi / 2, "phi_dot_start": -60.0}
-FULL = (1.8 / 0.35**2 + 20) * 9.81 * 0.35  # N m: an upright wheel that brakes so requires lambda_x = N
+FULL = gripping_torque(PAPER, 1.0)  # N m: an upright wheel that brakes so requires lambda_x = N
 
 
 def grip_warnings(w: FMU2Wheel) -> list[str]:

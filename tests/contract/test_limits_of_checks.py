@@ -12,8 +12,8 @@ from support.bounds import within
 from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER
-from wheelfmu.truth.sliding import HUB, ROAD, THROWN
+from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER, SWINGS
+from wheelfmu.truth.sliding import HUB, ROAD, SLIDES, THROWN, gripping_torque
 
 WEIGHT = PAPER.m * PAPER.g
 sides = pytest.mark.parametrize("side", [1, -1])
@@ -63,7 +63,7 @@ def test_a_step_of_no_length_is_taken_and_one_below_zero_is_not(wheel):
 
 # ---- warnings where they must not appear ----
 
-FULL = (PAPER.J_z / 0.35**2 + PAPER.m) * PAPER.g * 0.35  # N m, with which an upright wheel needs mu = 1
+FULL = gripping_torque(PAPER, 1.0)  # N m, with which an upright wheel needs mu = 1
 GRIP = "more than a dry road gives"
 
 
@@ -134,8 +134,8 @@ def test_other_ends_of_an_upright_wheel_are_no_falls(wheel):
 
 LIFTS: list[tuple[Values, dict[str, tuple[float, ...]], str, bool]] = [
     ({}, {"F_Z": (0.0, 500.0)}, "lifted off", True),
-    ({"theta_dot_start": 5.0, "psi_dot_start": 6.0, "phi_dot_start": 4.0}, {}, "lifted off", False),
-    ({"theta_dot_start": 5.0, "psi_dot_start": 6.0, "phi_dot_start": 4.0}, {"F_Z": (-20.0,)}, "lifted off", False),
+    (SWINGS, {}, "lifted off", False),
+    (SWINGS, {"F_Z": (-20.0,)}, "lifted off", False),
     ({"mu_max": 0.3}, {"F_Z": (20.0,)}, "needs a friction", False),
 ]
 
@@ -167,11 +167,8 @@ def test_the_start_of_a_guided_wheel_is_warned_of_where_it_is_the_papers_and_sou
     assert texts_of(w).count("keeps the paper's") == warned
 
 
-JAMS: Values = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
-
-
 def test_a_jam_is_warned_of_where_forces_are_read_after_a_road_was_set_and_once_it_slides_alone(wheel):
-    w = wheel().start(**JAMS, mu_max=0.5, mu_slide=0.4).to(0.001)
+    w = wheel().start(**SLIDES["jams"].start | {"mu_max": 0.5, "mu_slide": 0.4}).to(0.001)
     assert w.put(mu_max=9.0, mu_slide=0.6).get("lambda_3")[0] > 0 and w.texts() == []
     w.put(mu_slide=5.0).get("mu_slide", "mu_max", "F_X")  # no force is read
     assert w.texts() == []
@@ -196,7 +193,7 @@ def test_a_change_to_another_law_is_no_transition_and_is_not_logged(wheel):
 
 @pytest.mark.parametrize("keep", [True, False])
 def test_a_pull_is_logged_where_the_ground_may_pull_alone(wheel, keep):
-    w = wheel().start(keep_contact=keep, theta_dot_start=5.0, psi_dot_start=6.0, phi_dot_start=4.0, s=0.01)
+    w = wheel().start(keep_contact=keep, **SWINGS, s=0.01)
     w.step(1.0)
     text = texts_of(w)
     assert ("pulls" in text) == keep and ("lifted off" in text) == (not keep)

@@ -14,7 +14,7 @@ from support.differences import outputs
 from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, OK, STATES, Array, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
+from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS, PULLED
 from wheelfmu.truth.sliding import ROAD, SLIDES, THROWN
 
 TURNED: Values = {"psi_start": 1e5 + 0.3, "phi_start": -1e7 - 0.2, "slope": 0.2, "slope_direction": 3e6 + 0.1}
@@ -29,7 +29,7 @@ SCENES |= {
     "at rest, held": {**AT_REST, "s": 0.02},
     "guided": {**LEANING, "psi_dot_guide": 0.4, "theta_dot_guide": -0.2, "s": 0.01, "phi_dot_start": -8.0},
     "guided, slides": {**LEANING, **ROAD, "slip_x_start": 2.0, "slip_y_start": 0.5, "psi_dot_guide": -0.3},
-    "pulled": {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0, "s": 0.01},
+    "pulled": {**PULLED, "s": 0.01},
 }
 LOAD = {"F_X": (3.0, 1.0), "F_Y": (-2.0, 0.5, -0.3), "M_1": (0.3,), "M_2": (0.2, 0.1), "M_brake": (0.5, 2.0)}
 BRAKE = {"M_brake": (0.5, 2.0), "M_3": (-2.0, 9.0)}

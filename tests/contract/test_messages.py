@@ -11,13 +11,13 @@ from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wh
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.exchange import loaded
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.sliding import HUB, ROAD
+from wheelfmu.truth.scenes import PAPER
+from wheelfmu.truth.sliding import ROAD, SLIDES, gripping_torque
 
 START = 7.25  # s
-FULL = (1.8 / 0.35**2 + 20) * 9.81 * 0.35  # N m: an upright wheel that brakes so requires lambda_x = N
+FULL = gripping_torque(PAPER, 1.0)  # N m: an upright wheel that brakes so requires lambda_x = N
 ROLLING = {"theta_start": pi / 2, "phi_dot_start": -60.0}
 PULLED = {"keep_contact": True, "theta_start": 1.2, "theta_dot_start": 4.0, "psi_dot_start": 0.1, "phi_dot_start": 0.0}
-JAMS = {**HUB, "theta_start": 0.87, "theta_dot_start": 2.0, "slip_x_start": 2.0, "slip_y_start": -5.0}
 LIMIT = "needs a friction coefficient above mu_max"
 JAM = "jams (Painleve's paradox) with mu_slide"
 PULLS = "the ground pulls; without keep_contact the wheel would lift off"
@@ -37,7 +37,7 @@ def ended(library: Library, **values: Value) -> tuple[FMU2Wheel, str]:
 
 def ends(library: Library) -> Iterator[Case]:
     for values, what in (
-        ({**JAMS, "mu_max": 0.9, "mu_slide": 0.8}, f"{JAM} = 0.8"),
+        ({**SLIDES["jams"].start, "mu_max": 0.9, "mu_slide": 0.8}, f"{JAM} = 0.8"),
         ({"mu_max": 0.3}, f"{LIMIT} = 0.3"),
     ):
         w, end = ended(library, **values)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import pytest
 
 from wheelfmu.fmu.driver import OK, FMU2Wheel, Values
-from wheelfmu.truth.scenes import AT_REST, GENERAL, SCENES
+from wheelfmu.truth.scenes import AT_REST, GENERAL, PULLED, SCENES
 from wheelfmu.truth.sliding import ROAD, SLIDES, THROWN
 
 STEP = 1 / 32  # s
@@ -36,7 +36,6 @@ CUBIC |= {"M_3": (0.5, -2.0, 1.0, 0.5), "F_Y": (0.0, 1.0, 1.0, -1.0), "M_1": (0.
 BRAKE: Inputs = {"M_brake": (6.0, -14.0, 8.0, 2.0), "M_3": (-4.0, 9.0)}
 PULL: Inputs = {"F_Z": (100.0, 400.0, -300.0), "M_3": (4.0, -9.0)}
 TURN: Inputs = {"psi_dot_guide": (0.4, 0.5, -0.3, 0.1), "theta_dot_guide": (-0.1, 0.3, -0.2), "F_X": (4.0, -20.0)}
-FAST: Values = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
 STIFF = SCENES["stiff law"].start
 
 
@@ -57,16 +56,16 @@ def brakes(now: dict[str, float]) -> bool:
 
 
 MEETINGS = {
-    "a pull, unfolded": Meeting(FAST, meets=pulls),
-    "a pull, friction": Meeting({**FAST, "s": 0.02}, meets=pulls),
-    "a pull, friction, a cubic that goes on": Meeting({**FAST, "s": 0.02}, CUBIC, "cut", meets=pulls),
+    "a pull, unfolded": Meeting(PULLED, meets=pulls),
+    "a pull, friction": Meeting({**PULLED, "s": 0.02}, meets=pulls),
+    "a pull, friction, a cubic that goes on": Meeting({**PULLED, "s": 0.02}, CUBIC, "cut", meets=pulls),
     "a pull by a load, held by the brake": Meeting(
         {**AT_REST, "s": 0.02, "keep_contact": True},
         {**PULL, "M_brake": (20.0,)},
         "cut",
         meets=lambda now: pulls(now) and held(now),
     ),
-    "a pull, regularized": Meeting({**FAST, "s": 0.02, "friction_law": 2, "omega_s": 0.1}, PULL, "cut", meets=pulls),
+    "a pull, regularized": Meeting({**PULLED, "s": 0.02, "friction_law": 2, "omega_s": 0.1}, PULL, "cut", meets=pulls),
     "a pull, a slip": Meeting(SLIDES["pulled"].start, meets=lambda now: pulls(now) and slides(now), stop=0.8),
     "a pull, a slip, a cubic": Meeting(
         SLIDES["pulled"].start, CUBIC, "cut", meets=lambda now: pulls(now) and slides(now), stop=0.8

@@ -9,7 +9,7 @@ import pytest
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK, WARNING, FMU2Wheel, Values
 from wheelfmu.truth.exchange import loaded
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
+from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS, PULLED
 from wheelfmu.truth.sliding import ROAD, THROWN
 
 # Another value of each parameter, off that of every base.
@@ -19,7 +19,6 @@ OTHERS |= {"phi_start": 0.6, "psi_dot_start": 0.8, "theta_dot_start": -0.4, "phi
 OTHERS |= {"Y_O_start": -3.0, "slip_x_start": 0.4, "slip_y_start": -0.3, "formulation": 2, "friction_law": 2}
 OTHERS |= {"omega_s": 0.05, "method": 4, "keep_contact": True, "guided": True}
 HUB: Values = {"guided": True, "theta_start": 1.3, "psi_start": 0.0}
-PULLED: Values = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
 BASES: dict[str, Values] = {
     "unfolded": {"psi_dot_start": 0.3},
     "unfolded, guided": HUB,

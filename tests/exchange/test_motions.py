@@ -20,7 +20,7 @@ from wheelfmu.truth.measure import FRICTION, instants_error
 from wheelfmu.truth.motion import Library, start_values
 from wheelfmu.truth.reference import Start, Wheel, solve
 from wheelfmu.truth.reference.tables import read_table
-from wheelfmu.truth.scenes import PUSH
+from wheelfmu.truth.scenes import PULLED, PUSH
 
 RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
 
@@ -107,7 +107,6 @@ def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) 
 
 SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened
 ENDS, CHANGES = "terminateSimulation", "valuesOfContinuousStatesChanged"
-PULLED = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
 FALL = {"phi_dot_start": 0.0}
 AHEAD = {  # start values, which event of the run, what it calls for
     "stick": ({"s": 0.03}, 0, CHANGES),

@@ -8,11 +8,10 @@ from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import ERROR, OK
 from wheelfmu.truth.closed_forms import rolling_inertia
-from wheelfmu.truth.scenes import PAPER
+from wheelfmu.truth.scenes import PAPER, PULLED
 from wheelfmu.truth.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g
-PULLING = {"keep_contact": True, "psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}
 
 
 def pulls_of(w):
@@ -27,11 +26,11 @@ def instants_of_pulls(w):
 def test_a_ground_that_pulls_often_is_logged_once_per_run_at_an_instant_that_no_grid_changes(wheel, method):
     logs = []
     for step in (0.25, 4.0, 100.0):
-        w = wheel().start(method=method, **PULLING).to(*np.arange(step, 100.0 + step / 2, step))
+        w = wheel().start(method=method, **PULLED).to(*np.arange(step, 100.0 + step / 2, step))
         restored = wheel().back(w.serialized()).to(200.0)
         assert w.terminate() == w.reset() == OK and pulls_of(restored) == []
         logs.append(pulls_of(w))
-        w.start(method=method, **PULLING).to(100.0)  # a run of its own
+        w.start(method=method, **PULLED).to(100.0)  # a run of its own
         assert pulls_of(w) == 2 * logs[-1]
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == 1
 
@@ -47,7 +46,7 @@ def test_a_ground_that_pulls_by_rounding_alone_is_not_logged(wheel, phi_dot):
 @pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
 def test_a_restored_run_logs_a_pull_that_the_saved_one_has_ahead(wheel, method, t):
     """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
-    w = wheel().start(method=method, **PULLING).to(t)
+    w = wheel().start(method=method, **PULLED).to(t)
     other = wheel().back(w.serialized())
     logged = len(pulls_of(w))
     for each in (w, other):

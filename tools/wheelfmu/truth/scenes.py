@@ -20,6 +20,8 @@ from .schedule import Schedule
 THETA_0 = 5 * pi / 12  # the paper's start
 PAPER = Wheel()
 AT_REST = {"theta_start": pi / 2, "phi_dot_start": 0.0}  # upright
+SWINGS = {"psi_dot_start": 6.0, "theta_dot_start": 5.0, "phi_dot_start": 4.0}  # so fast that the wheel lifts off
+PULLED: Values = {"keep_contact": True, **SWINGS}
 
 
 def wheel_of(start: Values) -> Wheel:
