@@ -9,6 +9,7 @@ from math import atan2, cos, sin
 import numpy as np
 import pytest
 from support.bounds import beyond, within
+from support.differences import LOADS, difference, rates
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES, Array, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
@@ -32,7 +33,8 @@ SCENES: dict[str, Values] = {
     "steered": {**ODD, **CARRIED, "psi_dot_guide": 0.4, "theta_dot_guide": -0.2, "s": 0.02},
     "steered, slides": {**ODD, **CARRIED, **ROAD, **THROWN, "psi_dot_guide": 0.4, "theta_dot_guide": -0.2},
 }
-INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "psi_dot_guide", "theta_dot_guide")
+INPUTS = (*LOADS, "psi_dot_guide", "theta_dot_guide")
+PUSH = {"F_X": (-3.0, 5.0), "F_Y": (4.0, -7.0), "M_2": (0.5, 2.0)}
 
 
 def home(angle: float) -> float:
@@ -62,9 +64,8 @@ def by_inputs(make: Callable[..., FMU2Wheel], values: Values) -> Array:
 
 
 def in_time(make: Callable[..., FMU2Wheel], values: Values) -> Array:
-    w = make().start(tolerance=1e-10, **values).give({"F_X": (-3.0, 5.0), "F_Y": (4.0, -7.0), "M_2": (0.5, 2.0)})
-    names = [name for name, v in w.variables.items() if v.causality == "output" and v.type == "Real"]
-    return np.array([w.rates(names)(), w.to(0.02).rates(names)()])
+    w = make().start(tolerance=1e-10, **values).give(PUSH)
+    return np.array([rates(w), rates(w.to(0.02))])
 
 
 PATHS = (by_parameters, by_inputs, in_time)
@@ -120,8 +121,8 @@ def test_the_direction_of_the_slope_after_many_turns_is_read_as_it_was_set_and_h
         found = w.jacobian(["lambda_1", "lambda_2"], ["slope_direction"])[:, 0]
         assert w.get("slope_direction") == [far]
         near = wheel().initializing(**SCENES["rolls"], slope_direction=home(far))
-        ends = [np.array(near.put(slope_direction=home(far) + h).get("lambda_1", "lambda_2")) for h in (1e-4, -1e-4)]
-        within(np.abs(found - (ends[0] - ends[1]) / 2e-4).max(), 1e-6, "derivative off the quotient, N")
+        quotient = difference(near, ["lambda_1", "lambda_2"], "slope_direction", 1e-4)
+        within(np.abs(found - quotient).max(), 1e-6, "derivative off the quotient, N")
         beyond(np.abs(found).max(), 10.0, "derivative, N")
 
 
@@ -133,7 +134,6 @@ LEFT_ALONE: dict[str, tuple[Values, tuple[str, ...]]] = {
     ),
 }
 STEER = {"psi_dot_guide": (0.4, 0.5), "theta_dot_guide": (-0.2, 0.3)}
-PUSH = {"F_X": (-3.0, 5.0), "F_Y": (4.0, -7.0), "M_2": (0.5, 2.0)}
 
 
 @pytest.mark.parametrize("case", LEFT_ALONE)
@@ -144,14 +144,14 @@ def test_rates_after_turns_that_the_motion_itself_has_made_are_those_of_a_start_
     far = wheel().start(**values).to(1e10)
     angles = far.get("psi", "phi")
     beyond(max(map(abs, angles)), 1e9, "angle, rad")
-    rates = ("theta_dot", "psi_dot", "phi_dot")
-    start = {f"{name}_start": far.get(name)[0] for name in ("theta", *rates)}
+    start = {f"{name}_start": far.get(name)[0] for name in ("theta", "theta_dot", "psi_dot", "phi_dot")}
     found = np.array(far.give(shapes).rates(names)())
 
     def near(turn: float) -> Array:
         own = {**values, **start, "psi_start": home(angles[0]) + turn, "phi_start": home(angles[1]) + turn}
         return np.array(wheel().start(**own).give(shapes).rates(names)())
 
-    size = np.abs(near(0.0)).max()
-    within(np.abs(found - near(0.0)).max() / size, 3e-5, "rates off those at home, relative")  # of angles of 1e-5 rad
-    beyond(np.abs(near(1e-3) - near(0.0)).max() / size, 1e-4, "rates at another angle, relative")
+    at_home = near(0.0)
+    size = np.abs(at_home).max()
+    within(np.abs(found - at_home).max() / size, 3e-5, "rates off those at home, relative")  # of angles of 1e-5 rad
+    beyond(np.abs(near(1e-3) - at_home).max() / size, 1e-4, "rates at another angle, relative")

@@ -12,7 +12,7 @@ import pytest
 from support.bounds import beyond, within
 
 from wheelfmu.fmu.driver import Values
-from wheelfmu.truth.errors import KINDS
+from wheelfmu.truth.errors import KINDS, kind_errors
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.scenes import PAPER, Scene
@@ -43,11 +43,9 @@ def run(library: Library, scene: Scene, tolerance: float, formulation: int, time
 def distance(found: Run, expected: Run) -> float:
     """Of outputs and energy, up to the first end, over the largest value of their kind or 1."""
     rows = min(len(each.t) - (each.end is not None) for each in (found, expected))
-    off = [0.0]
-    for kind in SHOWN:
-        size = max(1.0, *(float(np.abs(expected[name][:rows]).max(initial=0.0)) for name in kind))
-        off += [float(np.abs(found[name][:rows] - expected[name][:rows]).max(initial=0.0)) / size for name in kind]
-    return max(off)
+    before = ({name: column[:rows] for name, column in each.columns.items()} for each in (found, expected))
+    errors = kind_errors(*before, 1.0)
+    return max(errors[kind[0]] for kind in SHOWN)
 
 
 STARTS = ("theta_start", "phi_dot_start", "psi_dot_start", "theta_dot_start")
