@@ -71,14 +71,14 @@ def test_a_state_that_takes_a_shorter_one_is_no_longer_than_it(wheel):
     w.free(state)
 
 
-def test_a_restored_instance_tells_its_faults_again(wheel):
+def test_a_restored_instance_logs_its_faults_again(wheel):
     w = wheel().initializing(m=-1.0, r_0=0.0)
-    assert w.get_one("tau")[0] == DISCARD and len(told := w.texts()) == 2
+    assert w.get_one("tau")[0] == DISCARD and len(logged := w.texts()) == 2
     other = wheel().back(w.serialized())
     for each in (w, other):
         each.take_messages()
         each.get_one("tau")
-    assert other.texts() == told and not w.texts()  # the partner: once for each instance
+    assert other.texts() == logged and not w.texts()  # the partner: once for each instance
 
 
 def test_a_state_outlives_its_instance_and_is_freed_once(wheel):

@@ -20,8 +20,8 @@ Inputs = dict[str, tuple[float, ...]]
 
 class Meeting(NamedTuple):
     """A scene under inputs from its start, `how` they are set: once; again at each step, as one polynomial that is cut;
-    anew at each step with a polynomial of its own; or as values that jump. `meets`: what must be under way at once
-    where states are saved.
+    at each step as the same polynomial from its beginning; or as values that jump. `meets`: what must be under way at
+    once where states are saved.
     """
 
     values: Values
@@ -75,7 +75,7 @@ MEETINGS = {
     "a loss of grip, multibody": Meeting({**ROAD, "formulation": 3}, stop=1.2),
     "a cubic that goes on": Meeting({"s": 0.02}, CUBIC, "cut"),
     "a cubic that is left alone": Meeting({"s": 0.02}, CUBIC),
-    "a cubic of its own at each step": Meeting({"s": 0.02}, CUBIC, "anew"),
+    "a cubic that begins anew at each step": Meeting({"s": 0.02}, CUBIC, "anew"),
     "loads that jump": Meeting({"s": 0.01, "method": 4}, CUBIC, "jump"),
     "a slip, loads that jump": Meeting({**ROAD, **THROWN, "s": 0.01}, CUBIC, "jump", meets=slides),
     "a cubic, multibody, Adams": Meeting({**GENERAL, "s": 0.02, "formulation": 3, "method": 2}, CUBIC, "cut"),

@@ -108,7 +108,7 @@ FAULTS = {
     "a file that is read": ("is read", "view motion.csv --output motion.csv", "view motion.csv -o ./motion.csv"),
     "a file of somebody else": ("is not of this command", "view motion.csv --output thesis.html"),
 }
-# Of ./scripts/run, each with words of its own.
+# Of ./scripts/run, each with its words.
 OF_RUN = {"theta=1": "theta_start", "slope=-8deg": "slope_direction", "s": "neither name=value nor a preset"}
 OF_RUN |= {"s=0": "above 0", "m=3m": "kg or g", "v=3furlong": "it takes no unit but m/s or km/h", "hopp": "hoop"}
 OF_RUN |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)", "friction_law=0": "1 (exact), 2 ("}

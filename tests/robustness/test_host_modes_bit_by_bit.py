@@ -10,6 +10,7 @@ import signal
 from collections.abc import Callable, Iterator
 from copy import copy
 from ctypes import c_double
+from itertools import repeat
 
 import numpy as np
 import pytest
@@ -187,11 +188,6 @@ def hosted(
     return found
 
 
-def always(mode: Mode) -> Iterator[Mode]:
-    while True:
-        yield mode
-
-
 @pytest.fixture(scope="module")
 def plain(library: Library) -> list[list[object]]:
     return answers(library.loaded, loaded(library))
@@ -200,7 +196,7 @@ def plain(library: Library) -> list[list[object]]:
 @each_mode
 def test_no_bit_of_the_hosts_environment_changes_an_answer_or_is_changed(library: Library, plain, mode: Mode) -> None:
     """A trap that strikes would end this process."""
-    assert hosted(library, always(mode)) == plain
+    assert hosted(library, repeat(mode)) == plain
 
 
 def changing(seed: int) -> Iterator[Mode]:

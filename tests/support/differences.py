@@ -1,4 +1,4 @@
-"""Derivatives of an instance against differences of its own values."""
+"""Derivatives of an instance against differences of its values."""
 
 from collections.abc import Callable, Sequence
 
