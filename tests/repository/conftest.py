@@ -1,8 +1,7 @@
 from pathlib import Path
 
 import pytest
-
-from wheelfmu.fmu.paths import copy_checkout
+from support.checkout import copy_checkout
 
 
 @pytest.fixture(scope="module")

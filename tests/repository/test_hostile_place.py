@@ -7,8 +7,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from support.checkout import copy_checkout
 
-from wheelfmu.fmu.paths import ROOT, copy_checkout
+from wheelfmu.fmu.paths import ROOT
 
 pytestmark = pytest.mark.xdist_group("hostile place")
 NAME = "it's (1) [x] & $y"

@@ -13,12 +13,13 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
+from support.checkout import copy_checkout
 
 from wheelfmu.fmu.building import CMAKE
 from wheelfmu.fmu.description.measuring import measured
 from wheelfmu.fmu.description.numbering import numbered, with_event_indicators
 from wheelfmu.fmu.driver import FMU2Wheel
-from wheelfmu.fmu.paths import ROOT, copy_checkout
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth import exchange as exchanging
 from wheelfmu.truth.motion import Library, Run
 

@@ -8,8 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-
-from wheelfmu.fmu.paths import copy_checkout
+from support.checkout import copy_checkout
 
 
 def refused(command: list[str | Path], folder: Path, **variables: str) -> str:
