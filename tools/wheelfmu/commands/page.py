@@ -19,10 +19,10 @@ OPTIONS = {
 }
 
 
-def main(given: Namespace) -> int:
-    from wheelfmu.page.__main__ import live, said
+def main(given: Namespace) -> None:
+    from wheelfmu.page.__main__ import live
     from wheelfmu.release import compiling
 
     folder = ROOT / "build" / "wasm"
     compiling.build(folder, compiling.WASM, "wheel_page")
-    return said(lambda: live(folder / "wheel_page.wasm", given.file, overwrite=given.overwrite))
+    live(folder / "wheel_page.wasm", given.file, overwrite=given.overwrite)

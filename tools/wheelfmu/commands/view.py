@@ -11,7 +11,7 @@ def reads(words: list[str]) -> Namespace:
     return options.arguments(words)
 
 
-def main(given: Namespace) -> int:
-    from wheelfmu.page.__main__ import recorded, said
+def main(given: Namespace) -> None:
+    from wheelfmu.page.__main__ import recorded
 
-    return said(lambda: recorded(given))
+    recorded(given)

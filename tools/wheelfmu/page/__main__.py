@@ -3,7 +3,6 @@
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
@@ -16,33 +15,31 @@ from wheelfmu.page.bodies import Body, read_bodies
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
 
 
-def said(write: Callable[[], tuple[Path, int]]) -> int:
-    """Writes a page and names it; a fault of the input is one sentence and exit status 2."""
+def main(*words: str) -> int:
     try:
-        output, size = write()
+        recorded(options.arguments(words))
+        return 0
     except Fault as fault:
         print(f"view: {fault}", file=sys.stderr)
         return 2
-    print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
-    return 0
 
 
-def main(*words: str) -> int:
-    return said(lambda: recorded(options.arguments(words)))
-
-
-def live(wasm: Path, output: Path, *, overwrite: bool = False) -> tuple[Path, int]:
+def live(wasm: Path, output: Path, *, overwrite: bool = False) -> None:
     check([output], [wasm], options.is_page, overwrite=overwrite)
-    return output, document.write(output, "The wheel, live", [], wasm=wasm)
+    written(output, document.write(output, "The wheel, live", [], wasm=wasm))
 
 
-def recorded(given: argparse.Namespace) -> tuple[Path, int]:
+def recorded(given: argparse.Namespace) -> None:
     parameters = {name: getattr(given, name) for name in options.GIVEN if getattr(given, name) is not None}
     bodies = [body for path in given.files for body in read_bodies(path, parameters, given.box)]
     bodies, every = document.thinned(named(bodies, given.labels))
     if every > 1:
         print(f"One row in {every} is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
-    return given.output, document.write(given.output, given.title, bodies, len(given.files))
+    written(given.output, document.write(given.output, given.title, bodies, len(given.files)))
+
+
+def written(output: Path, size: int) -> None:
+    print(f"{output} ({size / 1e6:.1f} MB): open it in a browser.")
 
 
 def named(bodies: list[Body], labels: list[str]) -> list[Body]:
