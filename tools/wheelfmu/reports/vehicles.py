@@ -27,6 +27,7 @@ COMPARED = tuple(name for name in MANOEUVRES if name not in (TOO_FAST.name, SPLI
 HALTS = ("straight", "hill", "curve")  # in which wheels stop inside a step
 IN_PLANE = {"step": STEP.changed(**planar.LEVEL), "curve": CURVE.changed(stop=7.0, **planar.LEVEL)}  # until it stands
 COURSE = ("X", "Y", "psi", "v", "omega")
+CASE = ["inputs over the step", "step [ms]"]
 STOPS = (  # closed form, and the words for the brake
     (suspended.LOCKED, suspended.sliding_way, "locked wheel"),
     (suspended.IDEAL, suspended.gripping_way, "ideal brake"),
@@ -173,37 +174,36 @@ def grows(report: Report, of: Vehicle, run: Manoeuvre, signal: str, h: float) ->
 @part(1)
 def car_steps(report: Report) -> dict[str, float]:
     """the car: orders, and the step that a command takes"""
-    far, plane = moving(report.tables), report.tables["in_plane"]
-    finest = plane[plane["step [ms]"] == 1000 * STEPS[-1]].groupby("inputs over the step")["largest"].max()
-    by = plane.groupby(["inputs over the step", "step [ms]"])["largest"].max()
-    order = {x: np.log2(by[x, 1000 * STEPS[0]] / by[x, 1000 * STEPS[1]]) for x in EXCHANGES}
+    every, plane = report.tables["car_errors"], largest(report.tables["in_plane"])
+    order = {x: np.log2(plane[x, 1000 * STEPS[0]] / plane[x, 1000 * STEPS[1]]) for x in EXCHANGES}
     off = {f"order_{x}": abs(order[x] - p) for x, p in zip(EXCHANGES, (1, 2, 4), strict=True)}
-    every = report.tables["car_errors"]
     taken = every[every["step [ms]"] == 1000 * LANE.h]
     return off | {
-        "plane": finest["rollback"],
-        "rollback": far["rollback", 1000 * STEPS[-1]],
+        "plane": plane["rollback", 1000 * STEPS[-1]],
+        "rollback": moving(every)["rollback", 1000 * STEPS[-1]],
         "step": 1000 * LANE.h,
         "step_course": taken["course"].max(),
         "step_time": taken["computing time"].max(),
     }
 
 
-def moving(tables: Tables) -> pd.Series:
-    """The largest error of a car whose wheels never stop, by exchange and step."""
-    found = tables["car_errors"]
-    found = found[~found["manoeuvre"].isin(HALTS)]
-    return found.groupby(["inputs over the step", "step [ms]"])["largest"].max()
+def largest(errors: pd.DataFrame) -> pd.Series:
+    """The largest error, by exchange and step."""
+    return errors.groupby(CASE)["largest"].max()
+
+
+def moving(errors: pd.DataFrame) -> pd.Series:
+    """That of a car whose wheels never stop."""
+    return largest(errors[~errors["manoeuvre"].isin(HALTS)])
 
 
 def views(tables: Tables) -> Tables:
     """The errors by exchange and step: of the whole car, in the plane; with the computing time."""
-    every, plane = tables["car_errors"], tables["in_plane"]
-    keys = ["inputs over the step", "step [ms]"]
+    every = tables["car_errors"]
     found = {
-        "whole car, against rollback at half the least step": moving(tables),
-        "in the plane, against one system of equations": plane.groupby(keys)["largest"].max(),
-        "computing time over simulated time": every.groupby(keys)["computing time"].median(),
+        "whole car, against rollback at half the least step": moving(every),
+        "in the plane, against one system of equations": largest(tables["in_plane"]),
+        "computing time over simulated time": every.groupby(CASE)["computing time"].median(),
     }
     rows = pd.DataFrame(found).dropna().sort_index(ascending=[True, False]).loc[list(EXCHANGES)]
     return tables | {"steps": rows.reset_index()}
