@@ -17,8 +17,6 @@ PR_SET_CHILD_SUBREAPER = 36
 PATIENCE = 5.0  # s, for a program to end by itself
 ROUND = 0.2  # s, between two looks for adopted processes that have ended
 SAFE = {"PYTHONSAFEPATH": "1"}  # the processes of pytest-xdist import nothing from the current folder
-
-
 STARTED: set[int] = set()
 starting = threading.Lock()
 
@@ -44,12 +42,19 @@ def table() -> Iterator[tuple[int, str, int, int]]:
             yield int(entry.parent.name), state, int(parent), int(session)
 
 
+def any_ended() -> bool:
+    """Whether a child has ended whose status is not taken: one system call, where the table is a file per process."""
+    with suppress(ChildProcessError):  # there is no child
+        return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+    return False
+
+
 def bury() -> None:
     """Takes the status of adopted processes that have ended: those of other sessions that were not started here."""
     me, own = os.getpid(), os.getsid(0)
     while True:
         time.sleep(ROUND)
-        for pid, state, parent, session in table():
+        for pid, state, parent, session in table() if any_ended() else ():
             with suppress(ChildProcessError), starting:
                 if (state, parent) == ("Z", me) and session != own and pid not in STARTED:
                     os.waitpid(pid, os.WNOHANG)
