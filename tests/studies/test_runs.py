@@ -118,6 +118,7 @@ FAULTS = {
     "either grid or list": {"list": {"s": [0.0]}},
     "one length": {"grid": {}, "list": {"s": [0.0, 0.1], "theta_start": [1.0]}},
     "a list of numbers": {"grid": {"s": []}},
+    "'s' must be a list": {"grid": {"s": []}, "values": {"s": 0.0}, "branch_at": 1.0},
     "two things": {"measures": {"s": "theta"}},
     "an integer": {"measures": {"n": "max(n_steps)"}},
     "above zero": {"interval": 0.0},

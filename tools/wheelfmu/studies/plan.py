@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
 SETTABLE, READABLE = ("parameter", "input"), ("output", "local")  # causalities
 POINT = "wheel"  # the dimension of a list
-PLANE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables, and what they are made of
+PLANE, SLIP = "plane_angle", "slip"  # quantities of a measure beside the variables
 PLANE_TEXT = "Angle of the wheel's plane to the ground, from 0 to 90 deg on either side: 90 deg - |theta - 90 deg|"
 SLIP_TEXT = "Speed of the slip: of the wheel's material point at the contact over the ground, 0 while it rolls"
 QUANTITIES = {
     PLANE: Variable(PLANE, "local", "Real", "rad", "", "", "", PLANE_TEXT),
     SLIP: Variable(SLIP, "local", "Real", "m/s", "", "", "", SLIP_TEXT),
 }
-SIZE = ("m", "r_0", "r")  # from which a body's moments of inertia follow
 MADE_OF = {PLANE: ("theta",), SLIP: ("slip_x", "slip_y")}
+SIZE = ("m", "r_0", "r")  # from which a body's moments of inertia follow
 
 
 class Status(IntEnum):
@@ -282,14 +282,14 @@ class Study:
         check_names([*self.varied, *self.values], SETTABLE, variables)
         check_names([*(n for m in self.parsed.values() for n in m.variables), *self.history], READABLE, variables)
         derived = [*moments(self.body)] if self.body else []
-        columns = self.varied | {name: [x] for name, x in self.values.items()}
+        columns = [*self.varied.items(), *((name, [x]) for name, x in self.values.items())]
         lengths = {name: len(column) for name, column in self.list.items()}
-        empty = quoted(name for name, xs in columns.items() if not xs)
-        parts = quoted(n for n, xs in columns.items() if variables[n].type != "Real" and any(x % 1 for x in xs))
-        words = quoted(n for n, xs in columns.items() if variables[n].type == "Boolean" and {*xs} - {0, 1})
+        empty = quoted(name for name, xs in columns if not xs)
+        parts = quoted(n for n, xs in columns if variables[n].type != "Real" and any(x % 1 for x in xs))
+        words = quoted(n for n, xs in columns if variables[n].type == "Boolean" and {*xs} - {0, 1})
         both = quoted(name for name in self.varied if name in self.values and self.branch_at is None)
         integers = quoted(name for name in self.sampled if variables[name].type != "Real")
-        fixed = quoted(name for name in derived if name in columns)
+        fixed = quoted(name for name in derived if name in {*self.varied, *self.values})
         names = [*self.measures, *self.history, *self.varied, *OWN, "time", POINT, *counters_of(variables), *derived]
         twice = quoted(name for name in names if names.count(name) > 1)
         shared = self.branch_at is None or any(can_change(variables[name]) for name in self.varied)
