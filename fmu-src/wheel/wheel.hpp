@@ -78,8 +78,8 @@ inline bool is_idle(const Wheel& wheel, unsigned variable) {
 // (run.t) => state there, in run.y
 const double* state_now(Wheel& wheel);
 
-// The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup, run
-// and demand.news.
+// The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup, run,
+// demand.slides and demand.news.
 bool prepare(Wheel& wheel, const Reporter& reporter);
 
 // (y: a copy of run.y, whose slip it writes) => in force at the instant reached, with what was set since the last step
