@@ -2,9 +2,9 @@
 // omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
-// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. A brake is too weak for so steep a ramp; but a jump that
-// it would undo within a millisecond stands for the ramp of a communication step, over which it goes on holding the
-// wheel.
+// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. A brake is too weak for so steep a ramp. But a jump that
+// the brake would undo within a millisecond stands for a ramp as long as a communication step, and there the brake
+// still holds the wheel.
 #include <cmath>
 
 #include "wheel_equations.h"

@@ -165,7 +165,8 @@ void guide(const WheelLoad& load, Matrix9& K, Vector9& column) {
 }
 
 // Solution of (24) and the moment of ground and brake about the axle. The determinant of a wheel that slides is that
-// without sliding friction times WheelSlip.room; of a held one both are times what a unit of tau adds to omega_z_dot.
+// without sliding friction times WheelSlip.room; if the wheel is held, both contain as a factor what a unit of tau adds
+// to omega_z_dot.
 struct Solution {
   Vector9 unknowns;  // q_ddot, lambda
   double tau, determinant;

@@ -6,7 +6,7 @@
  *              the Euler angles' rates in the place of the angular velocity
  *   multibody  the paper's system (24); unknowns q and q_dot, constraints on accelerations; 12 states
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
- * Each takes a wheel on a wheel carrier too, which directs the axle (WheelScene.guided).
+ * In each the wheel may be on a wheel carrier, which directs the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the non-spinning frame
@@ -127,8 +127,8 @@ typedef struct WheelDynamics {
 } WheelDynamics;
 
 /* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its
- * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u|
- * is. So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
+ * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
+ * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
 typedef struct WheelSlip {
   double N;            /* N, normal force */
   double room;         /* 1 without sliding friction; where it falls to zero, the wheel jams: no N >= 0 exists */
@@ -186,9 +186,9 @@ extern const WheelFormulation wheel_multibody_sliding;
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
 
-/* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept (turn = 0, settling >
- * 0). Of several that nearest, to two degrees, to the direction against the force that rolling would need. NaN where
- * there is none: the ground does not press, or the wheel jams. */
+/* The direction chi in which a slip from |u| = 0 begins: it grows and its direction is kept
+ * (turn = 0, settling > 0). Of several that nearest, to two degrees, to the direction against the force that rolling
+ * would need. NaN where there is none: the ground does not press, or the wheel jams. */
 double wheel_slip_direction(const WheelScene* scene, const double* reduced);
 
 /* Total energy, J: translation, rotation, height of O against gravity, zero at the origin. */

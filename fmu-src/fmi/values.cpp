@@ -19,8 +19,8 @@ bool check_variables(const Instance& i, Type type, const fmi2ValueReference vari
          });
 }
 
-// (number) => it as the type of the call. A count that outgrows an Integer stays at the largest one. A choice that is
-// no number, which only a forged state can bring, reads as the least.
+// (number) => value of the type that the call reads. A count that outgrows an Integer stays at the largest one. A
+// choice that is no number, which only a forged state can bring, reads as the least.
 template <class Value>
 Value represented(double value) {
   using Limits = std::numeric_limits<Value>;

@@ -62,7 +62,7 @@ int weights(N_Vector y, N_Vector w, void* user) {
   return 0;
 }
 
-// SUNDIALS's messages give times of the solver's clock.
+// (flag) => reason in place of SUNDIALS's message, whose times are those of the solver's clock
 const char* reason_of(int flag) {
   if (flag == CV_FIRST_RHSFUNC_ERR) return "the rates of the states are not finite";
   for (const int at_smallest : {CV_ERR_FAILURE, CV_CONV_FAILURE, CV_REPTD_RHSFUNC_ERR})
