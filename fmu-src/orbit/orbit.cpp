@@ -45,8 +45,8 @@ void Orbit::take_half() {
 }
 
 // (k) => the half k. The k halves before it are the integrated one and its mirror image in turn. A pair of them turns
-// the path by 2 delta; with d the displacement of O in the first half, n pairs carry O by a geometric sum, 2 Re(d
-// exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
+// the path by 2 delta; with d the displacement of O in the first half, n pairs carry O by a geometric sum,
+// 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
 Orbit::Half Orbit::half_at(double k) const {
   Half half;
   half.begin = begin_of(k);

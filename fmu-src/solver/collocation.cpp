@@ -199,8 +199,8 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
   return stops;
 }
 
-// (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend
-// on the size of long steps; a state that settles at a speed changes as 1 / speed.
+// (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend on the size
+// of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
   const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
   const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);

@@ -121,8 +121,8 @@ void Solver::look_for_events(double from) {
   }
 }
 
-// Whether a quick function may fall. Where an input has an extreme inside the step, the function is
-// evaluated there too, because none of the step's evaluations may have come near it.
+// Whether a quick function may fall. Where an input has an extreme inside the step, the function is evaluated there
+// too, because none of the step's evaluations may have come near it.
 bool Solver::comes_near(const Search& search) {
   if (step_.least_margin < problem_.near) return true;
   if (!search.extremes.empty()) expand();

@@ -16,8 +16,8 @@ namespace {
 // would be wrong by as much.
 constexpr double distance = 1e-12;
 
-// An event that lies ahead by less than this, in units of the time scale, has happened: some solvers stop a
-// little before the sign changes, and would stop there again and again.
+// An event that lies ahead by less than this, in units of the time scale, has happened: some solvers stop a little
+// before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
 constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,

@@ -20,8 +20,8 @@ using Polynomials = double[inputs_count][max_order + 1];
 // (inputs) => whether a rate of the carrier or one of its derivatives is not zero
 bool is_guiding(const Polynomials& inputs);
 
-// (inputs, tau: s from the origin) => load, and its rate: a brake at zero can only be put on. `guides`: the
-// carrier's inputs act.
+// (inputs, tau: s from the origin) => load, and its rate: a brake at zero can only be put on. `guides`: the carrier's
+// inputs act.
 void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load);
 WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
 

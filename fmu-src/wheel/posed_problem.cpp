@@ -31,18 +31,18 @@ template <int states>
   return least_margin(setup, now, y, N);
 }
 
-// (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 /
-// sin(theta) magnifies that of theta, of which a tenth is left over many steps. Where psi_dot is a state, accelerations
-// of the size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the
-// direction of a slip, which follows them at once.
+// (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 / sin(theta)
+// magnifies that of theta, of which a tenth is left over many steps. Where psi_dot is a state, accelerations of the
+// size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of
+// a slip, which follows them at once.
 double rounding_of_rates(double theta, double heading, bool slides) {
   const double cancels = slides ? heading * heading : heading;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
 }
 
-// (share, y) => weights. The states' rounding is a floor: no step has to be more exact than the numbers can
-// express. The regularized law turns errors of omega_z into moments over its width omega_s: the spin must be accurate
-// to a fraction of that width.
+// (share, y) => weights. The states' rounding is a floor: no step has to be more exact than the numbers can express.
+// The regularized law turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a
+// fraction of that width.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;

@@ -18,8 +18,8 @@ double power_of_two_below(double x) {
                    std::numeric_limits<double>::min());
 }
 
-// The time scale is sqrt(length / g); without a weight that matters it is the inverse of the initial rate.
-// The slope changes no scale: it may change during a run.
+// The time scale is sqrt(length / g); without a weight that matters it is the inverse of the initial rate. The slope
+// changes no scale: it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
   const WheelParameters& wheel = setup.scene.wheel;
   const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
@@ -35,8 +35,8 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
 }
 
-// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the
-// initial tilting, whichever is larger.
+// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the initial tilting,
+// whichever is larger.
 void set_error_scales(Setup& setup) {
   const WheelFormulation* const f = setup.formulation;
   const double length = setup.length, slowest = 1 / setup.time_scale;
