@@ -7,6 +7,7 @@ import hashlib
 import os
 import pickle
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -21,12 +22,11 @@ def folder() -> Path:
     """Of all that the reference's results follow from, besides the question."""
     here, usual = Path(__file__).parent, os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     files = [*sorted((here / "reference").glob("*.py")), here / "scenes.py", here / "schedule.py"]
-    sources = (
-        b"".join(file.read_bytes() for file in files) + repr([version(name) for name in ("numpy", "scipy")]).encode()
-    )
+    packages = repr([version(name) for name in ("numpy", "scipy")])
+    sources = b"".join(file.read_bytes() for file in files) + packages.encode()
     found = Path(usual) / "wheel.fmu" / "reference" / hashlib.sha256(sources).hexdigest()[:16]
-    if not found.exists():
-        found.mkdir(parents=True, exist_ok=True)
+    with suppress(FileExistsError):  # the one process that makes it removes the oldest
+        found.mkdir(parents=True)
         for old in sorted(found.parent.iterdir(), key=os.path.getmtime)[:-FOLDERS]:
             rmtree(old, ignore_errors=True)
     return found
@@ -38,6 +38,7 @@ def kept(question: tuple, answer: Callable[[], Any]) -> Any:
     if file.exists():
         return pickle.loads(file.read_bytes())
     found = answer()
+    file.parent.mkdir(parents=True, exist_ok=True)  # another checkout may have removed it meanwhile
     written = file.with_suffix(f".{os.getpid()}")
     written.write_bytes(pickle.dumps(found))
     written.replace(file)  # at once: other processes read it
