@@ -15,7 +15,7 @@ OPTIONS = {
         "metavar": "FILE",
         "help": "if not given, results/wheel_live.html",
     },
-    "--overwrite": {"action": "store_true", "help": "replaces also a FILE that is not of this command"},
+    "--overwrite": {"action": "store_true", "help": "replaces FILE even if this command did not write it"},
 }
 
 

@@ -43,14 +43,14 @@ def table() -> Iterator[tuple[int, str, int, int]]:
 
 
 def any_ended() -> bool:
-    """Whether a child has ended whose status is not taken: one system call, where the table is a file per process."""
+    """Whether a child is to be reaped: by one system call, where the table reads a file of every process."""
     with suppress(ChildProcessError):  # there is no child
         return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
     return False
 
 
 def bury() -> None:
-    """Takes the status of adopted processes that have ended: those of other sessions that were not started here."""
+    """Reaps adopted processes: those of other sessions that were not started here."""
     me, own = os.getpid(), os.getsid(0)
     while True:
         time.sleep(ROUND)

@@ -1,6 +1,6 @@
-"""Builds by CMake, by makefiles whatever the variable CMAKE_GENERATOR names: a folder by one process at a time.
+"""Builds with CMake and makefiles, whatever the variable CMAKE_GENERATOR names; one process at a time in a folder.
 
-What stands at the head is of the standard library alone.
+The imports at the head are of the standard library alone.
 """
 
 import os
@@ -34,8 +34,8 @@ def without_stale_cache(folder: Path, source: Path, line: str) -> None:
 
 @contextmanager
 def whole(folder: Path) -> Iterator[None]:
-    """A folder that is written to, to the end. What a process wrote that did not come to its end goes first: a file may
-    be cut short, and yet is newer than its sources."""
+    """A folder while it is written to. Files of a process that was killed meanwhile are removed first: one may be cut
+    short and still be newer than its sources."""
     mark = folder / "unfinished"
     if mark.exists():
         begin = mark.stat().st_mtime_ns
@@ -52,7 +52,7 @@ def build(
 ) -> None:
     """Configures and builds a folder; SystemExit with the end of FOLDER.log where that fails.
 
-    building: of CMake's --build, the folder if nothing is given; stale: what the cache must have."""
+    building: options of cmake --build, the folder by default; stale: a line that a cache must have to be kept."""
     log = folder.with_name(f"{folder.name}.log")
     to_configure = [*CMAKE, "-S", source, "-B", folder, *configure]
     to_build = ["cmake", "--build", *(building or [folder]), "--parallel", os.cpu_count()]

@@ -1,4 +1,4 @@
-"""The progress bar of what takes a while: on stderr, for terminals; the variable TQDM_DISABLE=1 hides it there too."""
+"""The progress bar: on stderr, only on a terminal; the variable TQDM_DISABLE=1 hides it there too."""
 
 import sys
 from collections.abc import Iterable

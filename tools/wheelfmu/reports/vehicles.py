@@ -166,7 +166,7 @@ def bounds(report: Report, of: Vehicle, run: Manoeuvre, signal: str, rule: float
 
 
 def grows(report: Report, of: Vehicle, run: Manoeuvre, signal: str, h: float) -> bool:
-    """Whether a signal swings wider at the end of 400 steps with held values than near their begin."""
+    """Whether a signal swings wider at the end of 400 steps with held values than near their start."""
     driven = of.drive(report.fmus, run.changed(stop=400 * h), h, "held", h)
     return bool(driven.ending) or np.ptp(driven.table[signal][-40:]) > np.ptp(driven.table[signal][10:50])
 

@@ -184,8 +184,8 @@ def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Processes that are started by what is made here never receive Ctrl-C, which is for the caller: it has to wait."""
-    ensure_running()  # of a first process it would end the waiting
+    """Processes that are started inside never receive Ctrl-C: it is for the caller alone."""
+    ensure_running()  # with a first process it would start inside, which unblocks the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

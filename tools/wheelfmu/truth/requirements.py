@@ -1,4 +1,4 @@
-"""What is asked of the FMU: the upper bound of each figure in the reports, requirements.csv. Tests hold it, too."""
+"""What is asked of the FMU: the upper bounds of the reports' figures, requirements.csv. Tests read them too."""
 
 import csv
 from pathlib import Path
