@@ -30,7 +30,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from .options import EXAMPLES, Manoeuvre, manoeuvres
-from .vehicle import Table
+from .vehicle import Table, row_of_brake
 
 LAYOUT = tomllib.loads((EXAMPLES / "car" / "car.toml").read_text())  # SI, from the chassis' centre of mass
 WHEELS: dict[str, dict[str, float | str]] = LAYOUT["wheel"]
@@ -166,28 +166,22 @@ def stopped(table: Table, begin: float) -> int:
     return int(np.argmax((table["time"] > begin) & (spins == 0)))
 
 
-def curvature(table: Table, c: SimpleNamespace, row: int) -> float:
-    """Of the rear point's path at a row, 1/m: by the steer angle."""
-    return float(np.tan(table["delta"][row]) / c.wheelbase)
-
-
-def slowed(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> tuple[int, np.ndarray, np.ndarray]:
-    """The row at which the brakes come; instants from there on and the rear point's deceleration by them, on a circle
-    of this curvature: power of the brakes, drag and grade = rate of the kinetic energy, each wheel at its own speed."""
-    t, begin = table["time"], manoeuvre["t_brake"]
+def slowed(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> tuple[np.ndarray, np.ndarray]:
+    """Instants from t_brake on, and the rear point's deceleration at them on a circle of this curvature: power of the
+    brakes, drag and grade = rate of the kinetic energy, each wheel at its own speed."""
+    begin = manoeuvre["t_brake"]
     ratio = {w: float(np.hypot(1 - kappa * c.y[w], kappa * (c.x[w] - c.x_rear))) for w in WHEELS}  # speed over v
     moved = sum(M_WHEEL * of**2 + J_X * kappa**2 + J_Z * (of / R) ** 2 for of in ratio.values())
     moved += c.m_B * (1 + (kappa * c.x_rear) ** 2) + c.J_3 * kappa**2
     brakes = manoeuvre["B_0"] * sum(c.brake[w] * ratio[w] for w in WHEELS)
-    (drag, grade), fine = resistance(manoeuvre, c), np.linspace(begin, t[-1], 200001)
+    (drag, grade), fine = resistance(manoeuvre, c), np.linspace(begin, table["time"][-1], 200001)
     a = (rise(fine, begin, manoeuvre["ramp_M"]) * brakes + drag + R * c.mass * grade) / (R * moved)
-    return int(np.searchsorted(t, begin - 1e-9)), fine, a
+    return fine, a
 
 
-def stop(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -> Iterator[Finding]:
-    """Instant and distance of the stop from the state at t_brake."""
-    t, begin = table["time"], manoeuvre["t_brake"]
-    i, fine, a = slowed(table, manoeuvre, c, kappa)
+def stop(table: Table, manoeuvre: Manoeuvre, fine: np.ndarray, a: np.ndarray) -> Iterator[Finding]:
+    """Instant and distance of the stop from the state at t_brake, under the deceleration a at the instants `fine`."""
+    t, begin, i = table["time"], manoeuvre["t_brake"], row_of_brake(table, manoeuvre)
     v = table["v"][i] - cumulative_trapezoid(a, fine, initial=0)
     end = int(np.argmax(v <= 0))
     way, later = float(trapezoid(v[: end + 1], fine[: end + 1])), float(t[stopped(table, begin)] - begin)
@@ -197,9 +191,10 @@ def stop(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace, kappa: float) -
 
 def braking(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """A straight stop, and the load moved forwards."""
-    yield from stop(table, manoeuvre, c, 0.0)
+    fine, a = slowed(table, manoeuvre, c, 0.0)
+    yield from stop(table, manoeuvre, fine, a)
     t, begin = table["time"], manoeuvre["t_brake"] + manoeuvre["ramp_M"]
-    end, (drag, grade), a = t[stopped(table, begin)], resistance(manoeuvre, c), slowed(table, manoeuvre, c, 0.0)[2]
+    end, (drag, grade) = t[stopped(table, begin)], resistance(manoeuvre, c)
     full = (t > begin + 0.5 * (end - begin)) & (t < end - 0.05)
     if np.count_nonzero(full) * (t[1] - t[0]) > 0.4:  # s: the chassis has ceased to pitch
         moment = drag + grade * c.heights - a[-1] * c.inertia
@@ -208,9 +203,9 @@ def braking(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[
 
 def curved(table: Table, manoeuvre: Manoeuvre, c: SimpleNamespace) -> Iterator[Finding]:
     """A stop on a circle; the car keeps it."""
-    i = int(np.searchsorted(table["time"], manoeuvre["t_brake"] - 1e-9))
-    kappa = curvature(table, c, i)
-    yield from stop(table, manoeuvre, c, kappa)
+    i = row_of_brake(table, manoeuvre)
+    kappa = float(np.tan(table["delta"][i]) / c.wheelbase)  # 1/m, of the rear point's path: by the steer angle
+    yield from stop(table, manoeuvre, *slowed(table, manoeuvre, c, kappa))
     way, turned = float(trapezoid(table["v"][i:], table["time"][i:])), float(table["psi"][-1] - table["psi"][i])
     yield Finding("angle turned while it stops", "rad", turned, kappa * way)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import ssp
 from .options import Manoeuvre, manoeuvres
-from .vehicle import DRY_ROAD, Errors, Fmus, Table, Vehicle, beyond_dry, road, upright
+from .vehicle import DRY_ROAD, Errors, Fmus, Table, Vehicle, beyond_dry, road, row_of_brake, upright
 
 LAUNCH, ABS, IDEAL, LOCKED = manoeuvres("suspended").values()
 GRID = 0.05  # s, where runs are compared; every step below divides it
@@ -86,7 +86,7 @@ def stops(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
 
 def way(table: Table, run: Manoeuvre) -> float:
     """Of all masses' centre from t_brake to where the wheel first stands, m; nan where it does not."""
-    begin, stands = begins(table, run), np.flatnonzero(table["X_O_dot"] <= 1e-3 * run["v"])
+    begin, stands = row_of_brake(table, run), np.flatnonzero(table["X_O_dot"] <= 1e-3 * run["v"])
     if begin >= len(table["time"]) or not len(stands):
         return np.nan
     return float(table["X"][stands[0]] - table["X"][begin])
@@ -97,24 +97,19 @@ def gripping_way(table: Table, run: Manoeuvre) -> float:
     a - (a - a_0) exp(-t / T_brake)."""
     a, before, lag = run["share"] * run["mu_max"] * GRAVITY, -acceleration(0.0, run["s"]), run["T_brake"]
     late = (a - before) * lag
-    return (float(table["v"][begins(table, run)]) + late) ** 2 / (2 * a) - late * lag
+    return (float(table["v"][row_of_brake(table, run)]) + late) ** 2 / (2 * a) - late * lag
 
 
 def sliding_way(table: Table, run: Manoeuvre) -> float:
     """Of a wheel that locks: as measured until it first slides, then at mu_slide g."""
-    lost, begin = int(np.argmax((table["time"] >= run["t_brake"]) & (table["slip_x"] > 0))), begins(table, run)
+    lost, begin = int(np.argmax((table["time"] >= run["t_brake"]) & (table["slip_x"] > 0))), row_of_brake(table, run)
     before = float(table["X"][lost] - table["X"][begin])
     return before + float(table["v"][lost]) ** 2 / (2 * run["mu_slide"] * GRAVITY)
 
 
 def shortest(table: Table, run: Manoeuvre) -> float:
     """No brake on this road stops in less."""
-    return float(table["v"][begins(table, run)]) ** 2 / (2 * run["mu_max"] * GRAVITY)
-
-
-def begins(table: Table, run: Manoeuvre) -> int:
-    """The row of t_brake, or the end of a shorter table."""
-    return int(np.searchsorted(table["time"], run["t_brake"] - 1e-9))
+    return float(table["v"][row_of_brake(table, run)]) ** 2 / (2 * run["mu_max"] * GRAVITY)
 
 
 SUSPENDED = Vehicle("suspended", start, verdict, complete=with_centre)

@@ -53,6 +53,11 @@ class Run:
         return self.table
 
 
+def row_of_brake(table: Table, run: Manoeuvre) -> int:
+    """The row of t_brake, or the end of a shorter table."""
+    return int(np.searchsorted(table["time"], run["t_brake"] - 1e-9))
+
+
 def largest_grip(table: Table) -> float:
     """The largest friction coefficient that a wheel requires in a run; 0 where it is not recorded."""
     return max((float(np.nanmax(x)) for name, x in table.items() if name.endswith("mu_required")), default=0.0)
