@@ -148,10 +148,11 @@ def limits(report: Report) -> pd.DataFrame:
         rule = step_limit({"wheel": wheel}, {"body": run["m_B"]}, [(run["k"], run["c"], ("wheel", "X"), "body")])
         rows.append({"coupling": f"suspended wheel, which {name}"} | bounds(report, SUSPENDED, run, "F_X", rule))
     run = STRAIGHT.changed(v=10.0, v_start=10.01, M_0=0.0, B_0=0.0, s=0.0)
+    wheels = {w: Wheel(guided=True, v=run["v"], follows="yaw") for w in WHEELS}
     along = [(run["k_h"], run["c_h"], (w, "X"), {"X": 1.0, "yaw": -run[f"y_{w}"]}) for w in WHEELS]
-    across = [(run["k_h"], run["c_h"], None, {"Y": 1.0, "yaw": run[f"x_{w}"]}) for w in WHEELS]
+    across = [(run["k_h"], run["c_h"], (w, "Y"), {"Y": 1.0, "yaw": run[f"x_{w}"]}) for w in WHEELS]
     bodies = {"X": run["m_B"], "Y": run["m_B"], "yaw": run["J_3"]}
-    rule = step_limit({w: Wheel() for w in WHEELS}, bodies, [*along, *across])
+    rule = step_limit(wheels, bodies, [*along, *across])
     return pd.DataFrame([*rows, {"coupling": "car, whose wheels roll"} | bounds(report, CAR, run, "fl.lambda_1", rule)])
 
 
