@@ -79,9 +79,10 @@ export class LiveWheel {
   /** The sign of the present spin omega_z: negative rolls towards +e1, 0 does not roll. */
   spin() { return Math.sign(this.wheel.table.value('omega_z', this.page.player.t)); }
 
-  /** Takes a plan; label: what its wheel is called. */
+  /** Takes a plan, of no scene unless the caller names one; label: what its wheel is called. */
   load(plan, label = NAMES[0]) {
     this.tell();
+    [this.scene, this.refusal] = [null, null];
     this.wheel.label = label;
     this.page.offer(this.page.bodies.length);
     this.page.plots.axis = 'fitted';
@@ -143,7 +144,6 @@ export class LiveWheel {
   setWheel({plan, thrown}) {
     const {s, ...values} = plan.values;
     this.load({...plan, values: thrown || this.value('s') > 0 ? plan.values : values});
-    Object.assign(this, {scene: null, refusal: null});
     this.page.player.seek(0);
   }
 
@@ -202,7 +202,6 @@ export class LiveWheel {
     page.stage.stand(balance ? 'behind' : 'beside');
     page.player.set({t, speed});
     [this.step, this.open, this.text] = [step ?? this.step, step !== null, text?.(...page.wheels)];
-    [this.scene, this.refusal] = [null, null];
     this.show();
   }
 

@@ -29,7 +29,7 @@ function setUpScenes(live) {
     say($('#about'), all[scene].about);
     live.page.player.seek(0);
     live.load(all[scene].plan);
-    Object.assign(live, {scene, refusal: null});
+    live.scene = scene;
     live.page.player.play();
   });
   return () => {
