@@ -123,8 +123,8 @@ def loaded(*components: Component) -> Iterator[None]:
 
 
 class Transfer:
-    """Variables of one component that are read or set together, and their places in the arrays of all signals; with
-    arrays of its own, built once: a step of the car makes a hundred such calls."""
+    """Variables of one component that are read (outputs) or set (inputs) together, with their places in the arrays of
+    all signals. The buffers are built once: a step of the car makes a hundred such calls."""
 
     def __init__(self, component: Component, reads: bool, references: list[int], at: list[int]) -> None:
         size = len(at)
@@ -149,8 +149,6 @@ class Master:
     def __init__(self, components: Iterable[Component], connections: Iterable[Connection]) -> None:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
-        # Variables of one component that are read (outputs) or set (inputs) together, with their places in the arrays
-        # of all signals.
         self.transfers: list[Transfer] = []
         number: dict[Signal, int] = {}
         for level in self._levels():

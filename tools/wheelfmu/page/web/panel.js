@@ -160,7 +160,7 @@ function setUpCarrier(live) {
   };
 }
 
-/** Where the present spin is beside the critical one, which a guided wheel has not. */
+/** Where the present spin is beside the critical one; a guided wheel has none. */
 function setUpCritical(live) {
   const host = $('#critical');
   return (wheel) => {

@@ -31,7 +31,7 @@ function slidesOf(table) {
 
 /**
  * The instants of the n transitions between rows k and k + 1: the first and the last where omega_z, carried on in a
- * line from two rolling rows on their side, is zero, if there are such; the others evenly between them.
+ * line from two rolling rows on their side, is zero, if there is such a zero; the others evenly between them.
  */
 function instants(table, k, n) {
   const {time, columns: {omega_z}} = table;

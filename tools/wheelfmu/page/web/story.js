@@ -12,7 +12,7 @@ function verdictOf({guess: {picked}, steps, step, page: {wheels, plots: {curves:
   const drawn = new Table({time, theta});
   const shown = tilt.lines[0].points.filter(([t]) => t <= drawn.end);
   const off = shown.reduce((sum, [t, moved]) => sum + Math.abs(drawn.value('theta', t) - moved), 0);
-  return `Your line (dashed) is off by ${(off / shown.length).toFixed(1)}° in the mean.`;
+  return `Your line (dashed) is off by ${(off / shown.length).toFixed(1)}° on average.`;
 }
 
 /** The card with the story beside the picture: text, something to try, one step on or back. */
