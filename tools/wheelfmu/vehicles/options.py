@@ -10,7 +10,6 @@ import re
 import tomllib
 from dataclasses import dataclass, field, replace
 from functools import cache
-from itertools import islice
 from typing import Self
 
 from wheelfmu.fmu.paths import ROOT
@@ -85,7 +84,7 @@ class Manoeuvre:
         """Why its closed forms do not hold, in words: a parameter that is changed and must not be; or empty."""
         own = manoeuvres(self.vehicle)[self.name]
         changed = (name for name in self.given if self[name] != own[name] and name not in self.holds)
-        return "".join(f"{name} is changed" for name in islice(changed, 1))
+        return next((f"{name} is changed" for name in changed), "")
 
     def changed(self, **values: float) -> Self:
         """With other parameters, or another stop, step or exchange."""
