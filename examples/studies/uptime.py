@@ -47,7 +47,7 @@ def draw(small: xr.Dataset, stem: Path) -> Path:
         text = {"textcoords": "offset points", "va": "center", "color": colour}
         ax.annotate(f"{-spin:.3g} rad/s", (s[-1], times[-1]), xytext=(5, apart), **text)
     limits = scale(wheel, s=1) * np.array([0.2, 60.0])
-    ax.set(yscale="log", xlim=(0, s[-1]), ylim=limits, xlabel="coefficient of rolling resistance $s$ [m]")
+    ax.set(yscale="log", xlim=(0, s[-1]), ylim=limits, xlabel="rolling resistance $s$ [m]")
     ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.yaxis.set_major_formatter("{x:g}")
     ax.set_ylabel("time until it leans by 30° [s]")

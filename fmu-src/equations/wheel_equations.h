@@ -32,7 +32,7 @@ typedef struct WheelParameters {
   double r_0, r;        /* m; radius of the ring of tube centres > 0, radius of the tube >= 0 */
   double J_x, J_y, J_z; /* kg m2, principal central moments, z is the axle */
   double g;             /* m/s2, >= 0, gravity across the road: against Z */
-  double s;             /* m, coefficient of rolling friction, >= 0 */
+  double s;             /* m, >= 0; rolling resistance: its moment is at most s N */
   double g_X, g_Y;      /* m/s2, gravity along the road: zero where it is level */
 } WheelParameters;
 
@@ -232,8 +232,9 @@ void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, 
                         double out[2]);
 
 /* The motion of a guided wheel after a jump of the carrier's rates to psi_dot and theta_dot, rad/s: the limit of ever
- * steeper ramps of both. phi_dot and a slip change with them. */
-void wheel_jump(const WheelScene* scene, double psi_dot, double theta_dot, WheelMotion* motion);
+ * steeper ramps of both. phi_dot and a slip change with them. hold: of a held wheel (WHEEL_HELD), the moment about the
+ * axle that could be added before it is released, N m. */
+void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion);
 
 /* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
 double wheel_less_turns(double angle);

@@ -80,7 +80,8 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
   if (!starts) {
     motion.psi_dot = k.psi_dot;
     motion.theta_dot = k.theta_dot;
-    wheel_jump(&scene, psi_dot, theta_dot, &motion);
+    const double hold = scene.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
+    wheel_jump(&scene, hold, psi_dot, theta_dot, &motion);
   }
   set_out(f, setup.scene.wheel, motion, y);
 }
