@@ -171,28 +171,11 @@ def signed(words) -> bytes:
     return struct.pack("<3Q", *words[:SUM], checksum(body)) + body
 
 
-NAN = struct.unpack("<Q", struct.pack("<d", np.nan))[0]
-
-
-@pytest.mark.parametrize("start", [{}, {"s": 0.03}, {"s": 0.03, "method": 2}, {"s": 0.03, "method": 3}])
-def test_a_state_in_which_one_word_is_no_number_is_refused(wheel, start):
-    """The fuzzer forges states at random."""
-    w = wheel().start(**start).to(0.7)
-    blob, ahead = w.serialized(), w.run([1.0])
-    words = words_of(blob)
-    assert signed(words) == blob  # the partner: the layout is as this test believes, and the bytes are taken
-    for place in range(HEADER, len(words)):
-        other = wheel().start(s=0.01)
-        assert other.restore(signed([*words[:place], NAN, *words[place + 1 :]])) == ERROR, place
-        assert other.said() == "fmi2SetFMUstate: a number is out of its bounds."
-    assert wheel().start().back(blob).run([1.0]) == ahead
-
-
 def test_a_state_of_another_version_is_refused_with_a_message(wheel):
     """Version 2.0.0 had a header for the call state in front of the mark; later ones have another mark."""
     w = wheel().start()
     words = list(words_of(w.serialized()))
-    for old in ([2, NAN, 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
+    for old in ([2, 0x7FF8000000000000, 77, 0x3430554D46484557, *words[1:]], [words[0] - (1 << 56), *words[1:]]):
         assert w.restore(struct.pack(f"<{len(old)}Q", *old)) == ERROR
         assert w.said() == f"{DAMAGED} no state of this FMU, its version and kind of instance."
 

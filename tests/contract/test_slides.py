@@ -15,21 +15,6 @@ WEIGHT, g = 20 * 9.81, 9.81
 LOCKED = {**UPRIGHT, **ROAD, "slip_x_start": 7.0, "M_brake": 1e3}
 
 
-def test_mu_slide_set_alone_acts_at_once_and_is_pending_in_a_state(wheel) -> None:
-    w, restored = wheel().start(**LOCKED).to(0.2), wheel()
-    before = w.get("X_O_dot")[0]
-    w.put(mu_slide=0.25)
-    assert w.get("mu_slide", "mu_max") == [0.25, 0.45]
-    within(abs(w.get("lambda_x")[0] + 0.25 * WEIGHT), 16 * WEIGHT * EPSILON, "force read before the step, N")
-    restored.back(w.serialized())
-    ends = [each.to(0.4).bits() for each in (w, restored)]
-    assert ends[0] == ends[1]
-    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.2), 1024 * 7 * EPSILON, "velocity, m/s")
-    in_force = wheel().back(w.serialized())
-    assert in_force.to(0.6).bits() == w.to(0.6).bits()
-    within(abs(w.get("X_O_dot")[0] - before + 0.25 * g * 0.4), 1024 * 7 * EPSILON, "velocity later, m/s")
-
-
 def test_a_road_on_which_the_wheel_would_jam_is_warned_of_where_its_forces_are_read_and_ends_the_run(wheel) -> None:
     """The paper's wheel at 59 degrees jams above 1.451."""
     leaning = {"theta_start": 1.03, "slip_y_start": -5.0, "phi_dot_start": 0.0, "mu_max": 0.5, "mu_slide": 0.4}

@@ -3,11 +3,12 @@ of the whole; with the checksum right, as only a forger has it. A field that is 
 """
 
 import struct
+from collections.abc import Sequence
 from math import inf, nan, pi
 
 import numpy as np
 import pytest
-from contract.test_serialization import HEADER, checksum
+from contract.test_serialization import HEADER, signed, words_of
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK, Values
 from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
@@ -70,25 +71,26 @@ def saved(wheel, name: str) -> tuple[tuple[int, ...], list[Field]]:
     w = wheel().start(**values)
     blob = (w.to(t) if t else w).serialized()
     w.close()
-    return struct.unpack(f"<{len(blob) // 8}Q", blob)[HEADER:], fields(kind, states, watched, stages, phase)
+    return words_of(blob)[HEADER:], fields(kind, states, watched, stages, phase)
 
 
-def forged(wheel, body: tuple[int, ...], mark: int) -> bytes:
+def forged(body: Sequence[int], mark: int) -> bytes:
     """With header: mark, size, checksum."""
-    data = struct.pack(f"<{len(body)}Q", *body)
-    return struct.pack("<3Q", mark, 24 + len(data), checksum(data)) + data
+    return signed([mark, 8 * (HEADER + len(body)), 0, *body])
 
 
 @pytest.fixture
 def mark(wheel) -> int:
-    return struct.unpack_from("<Q", wheel().start().serialized())[0]
+    return words_of(wheel().start().serialized())[0]
 
 
 def word(value: float) -> int:
     return struct.unpack("<Q", struct.pack("<q" if isinstance(value, int) else "<d", value))[0]
 
 
-def outside(least: float, most: float) -> list[float]:
+def outside(least: Bound, most: Bound) -> list[float]:
+    if least is None or most is None:
+        return [nan]
     if isinstance(least, int):
         return [least - 1, most + 1, -(2**63), 2**63 - 1]
     found = [nan, -inf] + [inf] * (most < inf)
@@ -110,10 +112,10 @@ def test_the_fields_are_those_that_this_test_believes_and_a_state_without_its_la
     body, found = saved(wheel, name)
     assert len(places(found)) == len(body)
     w = wheel().start()
-    assert w.restore(forged(wheel, body, mark)) == OK  # the partner: the bytes are taken
+    assert w.restore(forged(body, mark)) == OK  # the partner: the bytes are taken
     before = w.serialized()
     for wrong in (body[:-1], (*body, 0), body[:-8], (*body, *body), body[:40], (), (*body[:-1], word(nan))):
-        assert w.restore(forged(wheel, wrong, mark)) == ERROR
+        assert w.restore(forged(wrong, mark)) == ERROR
         assert w.said() == FORGED
     assert STATES[name][6] == STEPPING or w.serialized() == before
 
@@ -124,10 +126,8 @@ def test_a_word_just_outside_the_bounds_of_its_field_is_refused(wheel, mark: int
     w = wheel().start(s=0.01)
     refused = 0
     for field, place, least, most in places(found):
-        if least is None or most is None:
-            continue
         for value in outside(least, most):
-            forgery = forged(wheel, (*body[:place], word(value), *body[place + 1 :]), mark)
+            forgery = forged((*body[:place], word(value), *body[place + 1 :]), mark)
             assert w.restore(forgery) == ERROR and w.said() == FORGED, (field, place, value)
             refused += 1
     assert refused > 250
@@ -141,8 +141,8 @@ def test_a_history_whose_steps_lead_elsewhere_is_refused(wheel, mark: int, name:
     place, step = place_of(found, field), -1 if field == "steps" else 1
     forgery = (*body[:place], body[place] + step, *body[place + 1 :])
     w = wheel().start(s=0.01)
-    assert w.restore(forged(wheel, forgery, mark)) == ERROR and w.said() == FORGED
-    assert w.restore(forged(wheel, body, mark)) == OK  # the partner
+    assert w.restore(forged(forgery, mark)) == ERROR and w.said() == FORGED
+    assert w.restore(forged(body, mark)) == OK  # the partner
 
 
 # Whatever else the state says, these may have any value within their bounds.
@@ -163,10 +163,10 @@ def test_a_word_at_a_bound_of_its_field_is_taken_and_comes_back(wheel, mark: int
         for value in (least, most) if whole else (least, most, 0.75 * least + 0.25 * min(most, 1.0)):
             w = wheel()
             forgery = (*body[:place], word(value), *body[place + 1 :])
-            assert w.restore(forged(wheel, forgery, mark)) == OK, (field, place, value, w.sentences)
+            assert w.restore(forged(forgery, mark)) == OK, (field, place, value, w.sentences)
             again = w.serialized()
             w.close()
-            back = struct.unpack(f"<{len(again) // 8}Q", again)[HEADER:]
+            back = words_of(again)[HEADER:]
             assert back[place] == word(value) and sum(a != b for a, b in zip(back, body, strict=True)) <= 1, (
                 field,
                 place,
@@ -192,13 +192,13 @@ def test_a_run_that_has_ended_names_an_event_that_ends_one_and_no_other_run_does
     body, found = saved(wheel, "at the start")
     for event in range(8):
         w = wheel().start()
-        status = w.restore(forged(wheel, with_words(body, found, phase=ENDED, ended_by=event), mark))
+        status = w.restore(forged(with_words(body, found, phase=ENDED, ended_by=event), mark))
         assert status == (OK if event in (3, 5, 6, 7) else ERROR), event
         if status == OK:
             assert w.step(0.1) == ERROR and "Restore a state or reset." in w.sentences[-1]
     names = {3: "needs a friction", 5: "lifted off", 6: "jams", 7: "lies flat"}
     for event, text in names.items():
-        w = wheel().start().back(forged(wheel, with_words(body, found, phase=ENDED, ended_by=event), mark))
+        w = wheel().start().back(forged(with_words(body, found, phase=ENDED, ended_by=event), mark))
         assert w.step(0.1) == ERROR and text in w.said()
 
 
@@ -219,7 +219,7 @@ def test_a_state_that_comes_from_a_run_which_failed_or_was_closed_is_read_and_go
 @pytest.mark.parametrize("counter", ["transitions", "counted", "counters"])
 def test_counts_at_their_largest_stay_there_and_are_read_as_the_largest_integer(wheel, mark: int, counter: str) -> None:
     body, found = saved(wheel, "DOP853")
-    w = wheel().start().back(forged(wheel, with_words(body, found, **{counter: COUNT}), mark))
+    w = wheel().start().back(forged(with_words(body, found, **{counter: COUNT}), mark))
     w.time = 0.7
     name = "n_events" if counter == "transitions" else "n_steps"
     assert w.get(name) == [2**31 - 1]
@@ -227,7 +227,7 @@ def test_counts_at_their_largest_stay_there_and_are_read_as_the_largest_integer(
     assert w.get(name) == [2**31 - 1] and w.get("theta") == wheel().start(s=0.02, **GENERAL).to(3.0).get("theta")
     again = w.serialized()
     assert wheel().start().restore(again) == OK  # and can be saved again
-    less = wheel().start().back(forged(wheel, with_words(body, found, **{counter: 1000}), mark))
+    less = wheel().start().back(forged(with_words(body, found, **{counter: 1000}), mark))
     beyond_thousand = less.get(name)[0]
     assert 1000 <= beyond_thousand < 2000
 
@@ -244,8 +244,8 @@ def test_instants_of_a_history_that_are_out_of_their_order_are_refused_and_so_is
         {"known_until": start - 1e-9},
         {"first_stop": start},
     ):
-        assert w.restore(forged(wheel, with_words(body, found, **wrong), mark)) == ERROR and w.said() == FORGED, wrong
-    sound = forged(wheel, body, mark)
+        assert w.restore(forged(with_words(body, found, **wrong), mark)) == ERROR and w.said() == FORGED, wrong
+    sound = forged(body, mark)
     for size in (0, len(sound) - 8, len(sound) + 8):
         assert w.restore(sound[:8] + struct.pack("<Q", size) + sound[16:]) == ERROR and "damaged" in w.said()
     assert w.restore(sound) == OK

@@ -1,6 +1,6 @@
 """The second component where the first is tested, and the reverse. What is true along X is so along Y, by a quarter
 turn of the scene: motions, rates, derivatives, model exchange. Each input alone, in each of its derivatives, does the
-work of its power. Moments about e1 and e2 reach the wheel carrier each at its own component.
+work of its power.
 """
 
 from itertools import pairwise
@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.differences import LOADS, slope
+from support.differences import LOADS
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES, Array, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
@@ -171,61 +171,3 @@ def test_each_input_alone_in_each_of_its_derivatives_does_the_work_of_its_power(
     kept = w.get(load)
     assert w.by(0.02).get(load) == w.by(0.02).get(load) == kept  # a derivative holds for one step
     beyond(moved, 1e-3, "work, J")
-
-
-@pytest.mark.parametrize("scene", ["steered", "steered, slides"])
-def test_a_moment_across_the_axle_of_a_guided_wheel_is_the_carriers_at_the_same_component(wheel, scene):
-    """Of M_1 and M_2 the carrier gives the opposite, and nothing else is moved."""
-    names = [name for name in wheel().reals if not name.startswith("M_guide")]
-    plain = wheel().start(**SCENES[scene]).to(0.05)
-    for k in (1, 2):
-        w = wheel().start(**SCENES[scene]).put(**{f"M_{k}": 3.0}).to(0.05)
-        difference = np.subtract(w.get("M_guide_1", "M_guide_2"), plain.get("M_guide_1", "M_guide_2"))
-        expected = np.zeros(2)
-        expected[k - 1] = -3.0
-        within(np.abs(difference - expected).max(), 1e-7, f"moments of the carrier off -M_{k}, N m")
-        within(np.abs(np.subtract(w.get(*names), plain.get(*names))).max(), 1e-6, "all else")
-        slopes = w.jacobian(["M_guide_1", "M_guide_2"], ["M_1", "M_2"])
-        within(np.abs(slopes + np.eye(2)).max(), 1e-9, "derivatives off minus one")
-
-
-def test_a_carrier_that_leans_and_steers_gives_theta_and_psi_each_its_course_and_derivatives(wheel):
-    """Each angle is the integral of its polynomial."""
-    shapes = {"psi_dot_guide": (0.4, 0.5, -0.3, 0.2), "theta_dot_guide": (-0.2, 0.3, 0.4, -0.1)}
-    w = wheel().start(tolerance=1e-12, guided=True, theta_start=1.3, psi_start=0.2, phi_dot_start=-4.0, **GENERAL)
-    for t in (0.1, 0.25, 0.4, 0.7):
-        w.give(shapes, w.time).to(t)
-        for name, begin in (("psi", 0.2), ("theta", 1.3)):
-            c = shapes[f"{name}_dot_guide"]
-            within(abs(w.get(name)[0] - begin - sum(c[k] * t ** (k + 1) / (k + 1) for k in range(4))), 1e-11, name)
-            within(abs(w.get(f"{name}_dot")[0] - sum(c[k] * t**k for k in range(4))), 1e-11, f"{name}_dot")
-            w.give(shapes, t)
-            found = w.get(f"{name}_ddot")[0]
-            within(abs(found - sum(k * c[k] * t ** (k - 1) for k in range(1, 4))), 1e-10, f"{name}_ddot")
-    assert w.get("psi_dot")[0] != w.get("theta_dot")[0]
-
-
-REACTIONS = ("M_guide_1", "M_guide_2", "lambda_1", "lambda_3", "lambda_y")
-
-
-@pytest.mark.parametrize("rate", ["psi_dot_guide", "theta_dot_guide"])
-def test_the_rates_of_the_reactions_follow_each_rate_of_the_carrier_in_all_its_derivatives(wheel, rate):
-    shape, h = {rate: (0.2, 0.5, -3.0, 8.0)}, 2.0**-9
-    w = wheel().start(tolerance=1e-12, guided=True, theta_start=1.2, phi_dot_start=-4.0, **GENERAL)
-    for t in (0.0, 0.2, 0.4):
-        if t:
-            w.give(shape, w.time).to(t)
-            arrived = np.array(w.rates(REACTIONS)())  # of the step that ends here
-        found, blob = np.array(w.give(shape, t).rates(REACTIONS)()), w.serialized()
-        difference = slope(
-            lambda off, t=t, blob=blob: (w.back(blob).give(shape, t).to(t + off) if off else w).get(*REACTIONS),
-            h,
-            range(7),
-        )
-        w.back(blob)
-        within(np.abs(found - difference).max() / np.abs(difference).max(), 1e-6, f"rates at {t} s, relative")
-        if t:
-            within(np.abs(arrived - found).max() / np.abs(found).max(), 1e-9, f"rates on arrival at {t} s, relative")
-            other = np.array(w.give({rate: (*shape[rate][:3], 8.5)}, t).rates(REACTIONS)())
-            beyond(np.abs(found - other).max() / np.abs(difference).max(), 1e-4, "rates of another cubic, relative")
-        w.back(blob)
