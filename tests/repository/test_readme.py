@@ -18,6 +18,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOOLS = (ROOT / "docs" / "in_your_tool.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
 VEHICLE = (ROOT / "docs" / "vehicle.md").read_text(encoding="utf-8")
+CONTROL = (ROOT / "docs" / "linearize_and_control.md").read_text(encoding="utf-8")
 HEADER_PAGE = (ROOT / "docs" / "c_header.md").read_text(encoding="utf-8")
 EXAMPLES = ROOT / "examples" / "python"
 
@@ -156,7 +157,7 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
 
 
 SHOWN = dict.fromkeys(("vehicle_start", "brake_limit", "car", "anti_lock", "traction_control"), VEHICLE)
-SHOWN |= {"hill": VEHICLE, "step_limit": VEHICLE, "quarter_car": RECIPES}
+SHOWN |= {"hill": VEHICLE, "step_limit": VEHICLE, "quarter_car": RECIPES, "gradient": CONTROL}
 
 
 def shown(name: str) -> str:
