@@ -97,7 +97,7 @@ def verdict(table: Table, manoeuvre: Manoeuvre) -> tuple[bool, list[str]]:
     if times := slid(table):
         needs, note = "slides at the " + ", the ".join(f"{NAMES[w]} wheel for {t:.2f} s" for w, t in times.items()), ""
     least, name = min((table[f"{w}.lambda_3"].min(), name) for w, name in NAMES.items())
-    lowest = f"Smallest normal force: {least:.0f} N at the {name} wheel."
+    lowest = f"Smallest wheel load: {least:.0f} N at the {name} wheel."
     values, faults = findings(table, manoeuvre)
     head = [f"Failed: {fault}." for fault in faults[:1]] or [f"Possible: it {needs}.", *filter(None, [note])]
     return not faults, [*head, lowest, *values]

@@ -54,7 +54,7 @@ def verdict(table: Table, run: Manoeuvre) -> tuple[bool, list[str]]:
         return False, [f"Failed: the wheel requires a friction coefficient of {beyond_dry(most)}."]
     if run.name != "launch":
         return stops(table, run)
-    speed = f"Final speed: {table['X_O_dot'][-1]:.4f} m/s; smallest normal force: {least:.1f} N"
+    speed = f"Final speed: {table['X_O_dot'][-1]:.4f} m/s; smallest wheel load: {least:.1f} N"
     return True, [f"{speed}; friction required: {most:.2f}."]
 
 
