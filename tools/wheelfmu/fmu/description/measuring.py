@@ -35,17 +35,27 @@ LAW: Values = {
     "phi_dot_start": -GENERAL["psi_dot_start"] * cos(GENERAL["theta_start"]) + 5e-4,
 }
 GUIDED = {"guided": 1, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
+# Of a guided wheel: in model exchange only as states that are tried, in co-simulation by its carrier.
+TURNING = {"psi_dot": 0.4, "theta_dot": -0.3}
+BRAKED: Values = {"s": 0.03, "M_brake": 500.0}
+
+
+def held(psi_dot: float) -> Values:
+    """omega_z is zero, and tau_brake the brake's share of the moment that keeps it there."""
+    return {**BRAKED, "phi_dot_start": -psi_dot * cos(GENERAL["theta_start"])}
+
+
 PLAIN: Values = {}
 SCENES: tuple[Values, ...] = (
     PLAIN,
     {**UNEQUAL, "s": 0.03},
     LAW,
     {**UNEQUAL, **LAW},
+    {**UNEQUAL, **held(GENERAL["psi_dot_start"])},
+    {**UNEQUAL, **GUIDED, **held(TURNING["psi_dot"])},
     {**LAW, **GUIDED, "phi_dot_start": 5e-4},
     {**UNEQUAL, **GUIDED, "s": 0.03},
 )
-# Of a guided wheel: in model exchange only as states that are tried, in co-simulation by its carrier.
-TURNING = {"psi_dot": 0.4, "theta_dot": -0.3}
 # Co-simulation alone slides: a slip changes what the force of the ground depends on.
 ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
 SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
@@ -151,8 +161,8 @@ def measured(fmu: Path) -> Dependencies:
     with TemporaryDirectory() as folder:
         description, loaded = unpacked(fmu, folder)
         for scene in (without_zeros(loaded, changed) for changed in SCENES):
-            parts, turns = [], bool(scene.get("guided")) and scene["phi_dot_start"] == GENERAL["phi_dot_start"]
-            turning = TURNING if turns else {}
+            parts, small_spin = [], scene.get("friction_law") == LAW["friction_law"]
+            turning = TURNING if scene.get("guided") and not small_spin else {}
             for slip in SLIPS:
                 driven = {**scene, **ROAD, **slip, **{f"{name}_guide": rate for name, rate in turning.items()}}
                 with unit(loaded, CO_SIMULATION, driven, runs=False) as u:
