@@ -7,7 +7,7 @@
   ./scripts/run slope=12% r_0=30cm          units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
   ./scripts/run M_brake=20 stop_time=20     an input, which keeps its value; a longer run
   ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road: the wheel slides where rolling would need more than mu_max
-  ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   its carrier: a locked wheel, its slip
+  ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   on its carrier: a locked wheel slides
   ./scripts/run guided=true v=10m/s psi_dot_guide=0.5 mu_max=0.3 mu_slide=0.25   steered: a turn that slides out
   ./scripts/run coin                        a preset wheel
   ./scripts/run backspin                    a preset case: a hoop that slides, rolls and comes back

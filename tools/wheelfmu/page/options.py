@@ -25,18 +25,18 @@ def length(text: str) -> float:
 def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     """The options; what cannot be meant ends the program with a sentence."""
     of = variables((ROOT / "modelDescription.xml").read_bytes(), "parameter")
-    parser = Parser(prog="scripts/view", description="An offline 3D page of results (docs/page.md).")
+    parser = Parser(prog="./scripts/view", description="Writes an offline 3D page of results (docs/page.md).")
     add = parser.add_argument
     add("files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it")
     add("--output", "-o", type=Path, help="the page (default: the first file's name with .html)")
-    add("--title", default="The wheel in motion")
+    add("--title", default="The wheel in motion", help="of the page (default: %(default)s)")
     add("--labels", nargs="+", default=[], help="names of the bodies on the page, in order")
     add("--r_0", type=of["r_0"].number_of, help="ring radius in m (default: from Z_O and theta)")
     add("--r", type=of["r"].number_of, help="tube radius in m (default: from Z_O and theta)")
     add("--slope", type=of["slope"].number_of, help="slope of the road: 8deg, 12%% (default: the file's, else level)")
     add("--slope_direction", type=of["slope_direction"].number_of, help="direction in which the road rises, from X")
     add("--box", nargs=3, type=length, metavar=("L", "W", "H"), help="size of a car's body in m")
-    add("--overwrite", action="store_true", help="replace other files too")
+    add("--overwrite", action="store_true", help="replace the page even if this command did not write it")
     given = parser.parse_args(words)
     if missing := [str(path) for path in given.files if not path.is_file()]:
         parser.error(f"{missing[0]} cannot be read: there is no such file")

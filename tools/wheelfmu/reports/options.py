@@ -25,7 +25,7 @@ def report(name: str) -> str:
 
 
 def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = Parser(prog="scripts/report", description=DESCRIPTION)
+    parser = Parser(prog="./scripts/report", description=DESCRIPTION)
     parser.add_argument("names", nargs="+", metavar="NAME", type=report, help=", ".join((*NAMES, "all")))
     target = parser.add_mutually_exclusive_group()
     target.add_argument("--publish", action="store_true", help="write into docs/results")

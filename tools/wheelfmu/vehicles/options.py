@@ -174,7 +174,8 @@ def usage(name: str = "", *arguments: str) -> str:
         rows = [f"  {vehicle:11s}{text}" for vehicle, text in ABOUT.items()]
         line = f"./scripts/example {'|'.join(ABOUT)} [parameter=value ...]   a vehicle made of FMUs, run and drawn"
         return "\n".join([line, *rows, "./scripts/example NAME --help lists the parameters of one example."])
-    lines, (words, numbers) = [f"./scripts/example {name} [parameter=value ...]   {ABOUT[name]}"], takes(name)
+    words, numbers = takes(name)
+    lines = [f"./scripts/example {name}{' [parameter=value ...]' if numbers else ''}   {ABOUT[name]}"]
     for word, choices in words.items():
         lines.append(f"  {word}={'|'.join(choices)}")
         for one in manoeuvres(name).values() if word == file(name).get("word") else ():
