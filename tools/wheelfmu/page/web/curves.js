@@ -42,7 +42,7 @@ export const CURVES = [
            r * Math.cos(theta) * psi_dot * Math.sin(theta) - (r_0 + r * Math.sin(theta)) * omega_z],
       {fits: (wheels) => wheels.some(brakes)}),
   curve(
-      'N', 'N', 0, ['lambda_3'], 'Normal force of the ground', ([N]) => [N],
+      'N', 'N', 0, ['lambda_3'], 'Wheel load', ([N]) => [N],
       {fits: (wheels) => !wheels.some(brakes) || moves(wheels, 'lambda_3')}),
   curve(
       'M_guide e_1, ┄ e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
