@@ -3,6 +3,8 @@ Python packages in the versions of requirements.lock. Other commands set themsel
 
 from argparse import Namespace
 
+from wheelfmu.fmu.values import Fault, suggestion
+
 WORDS = [
     "check",
     "tidy",
@@ -18,7 +20,16 @@ WORDS = [
     "release",
 ]
 ABOUT = f"besides what ./scripts/run needs: {', '.join(WORDS)}; test is most of them, check the linters and pytest"
-OPTIONS = {"words": {"nargs": "*", "metavar": "WORD", "choices": [*WORDS, []], "help": ABOUT}}
+
+
+def word(text: str) -> str:
+    """One of them; Fault if it is none."""
+    if text not in WORDS:
+        raise Fault(f'there is no "{text}"; there are {", ".join(WORDS)}.{suggestion(text, dict.fromkeys(WORDS, ""))}')
+    return text
+
+
+OPTIONS = {"words": {"nargs": "*", "metavar": "WORD", "type": word, "help": ABOUT}}
 
 
 def needs(given: Namespace) -> list[str]:

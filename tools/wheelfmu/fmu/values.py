@@ -70,7 +70,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         name = self.prog.rpartition("/")[2]
-        self.exit(2, f"{name}: {message.rstrip('.')}. ./scripts/{name} --help explains it.\n")
+        sentence = message if message.endswith((".", "?")) else f"{message}."
+        self.exit(2, f"{name}: {sentence} ./scripts/{name} --help explains it.\n")
 
 
 def single(given: Iterable[tuple[str, Any]]) -> dict[str, Any]:
