@@ -18,6 +18,7 @@ from lxml import etree
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault
 from wheelfmu.publishing import variables
 from wheelfmu.publishing.markdown import pages, with_figures
 
@@ -46,8 +47,9 @@ def test_another_figure_in_prose_would_be_noticed() -> None:
     for page in ("README.md", "docs/physics.md", "docs/brake_hold_steer.md"):
         wrong = re.sub(r"\d(?=<!--\w+\.)", "7", TEXTS[page])
         assert wrong != with_figures(wrong) == TEXTS[page]
-    with pytest.raises(KeyError):
-        with_figures("1<!--physics.nothing-->")
+    for wrong in ("1<!--physics.nothing-->", "1 <!--physics.tips-->", "<!--physics.tips-->"):
+        with pytest.raises(Fault, match=re.search(r"\w+\.\w+", wrong)[0]):
+            with_figures(wrong)
 
 
 def files(*patterns: str) -> list[str]:

@@ -14,6 +14,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from tabulate import tabulate
 
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault
 
 TEMPLATES = tuple(ROOT / "tools" / "wheelfmu" / part / "templates" for part in ("publishing", "reports"))
 
@@ -60,14 +61,23 @@ def table(frame: Any) -> str:
 
 
 # A figure in prose: a number, and behind it its report and name as a comment.
-FIGURE = re.compile(r"[-−]?\d[\d.]*(?:e-?\d+)?<!--(\w+\.\w+)-->")
+FIGURE = re.compile(r"([-−]?\d[\d.]*(?:e-?\d+)?)?<!--(\w+\.\w+)-->")
 
 
 def with_figures(text: str) -> str:
-    """The text with every figure in its prose as docs/results/data has it; KeyError: there is no such figure."""
+    """The text with every figure in its prose as docs/results/data has it; Fault where it has none, or no number."""
     rows = csv.DictReader((ROOT / "docs" / "results" / "data" / "figures.csv").open(encoding="utf-8"))
     known = {f"{row['report']}.{row['figure']}": number(float(row["measured"])) for row in rows}
-    return FIGURE.sub(lambda found: f"{re.sub('^-', '−', known[found[1]])}<!--{found[1]}-->", text)
+
+    def filled(found: re.Match[str]) -> str:
+        given, name = found.groups()
+        if name not in known:
+            raise Fault(f"docs/results/data/figures.csv has no figure {name}.")
+        if not given:
+            raise Fault(f"<!--{name}--> must stand right behind a number, without a space.")
+        return f"{re.sub('^-', '−', known[name])}<!--{name}-->"
+
+    return FIGURE.sub(filled, text)
 
 
 def page(template: str, **values: object) -> str:

@@ -17,6 +17,7 @@ from types import ModuleType
 from wheelfmu.diagrams import style
 from wheelfmu.fmu.paths import ROOT, build_folder
 from wheelfmu.fmu.progress import bar
+from wheelfmu.fmu.values import Fault
 from wheelfmu.publishing.markdown import pages, with_figures
 from wheelfmu.truth.motion import Library
 
@@ -70,10 +71,18 @@ def draw(name: str, folder: Path) -> bool:
     return not missed
 
 
+def filled(page: Path, text: str) -> str:
+    """A document with the figures of the data; Fault names it."""
+    try:
+        return with_figures(text)
+    except Fault as fault:
+        raise Fault(f"{page.relative_to(ROOT)}: {fault}") from fault
+
+
 def outdated() -> dict[Path, str]:
     """The documents whose figures in prose are not those of the data, as they have to be."""
     texts = {page: page.read_text(encoding="utf-8") for page in (*pages(), CREDIBILITY)}
-    return {page: new for page, text in texts.items() if (new := with_figures(text)) != text}
+    return {page: new for page, text in texts.items() if (new := filled(page, text)) != text}
 
 
 def stale(name: str, folder: Path) -> bool:

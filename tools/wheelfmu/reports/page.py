@@ -25,6 +25,7 @@ import numpy as np
 import pandas as pd
 
 from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.fmu.values import Fault
 from wheelfmu.publishing.markdown import number, page, said
 from wheelfmu.truth import requirements
 from wheelfmu.truth.motion import Library
@@ -103,7 +104,8 @@ class Report:
             if isinstance(found, pd.DataFrame | list):
                 self.tables[name] = pd.DataFrame(found)
             else:
-                assert (self.name, name) in REQUIREMENTS.index, f"requirements.csv does not list {name} of {self.name}"
+                if (self.name, name) not in REQUIREMENTS.index:
+                    raise Fault(f"{requirements.FILE.relative_to(ROOT)} does not list {name} of {self.name}.")
                 self.figures[name] = float(found)
 
     def value(self, figure: Any) -> float:
