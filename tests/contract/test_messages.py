@@ -201,5 +201,5 @@ def test_every_number_of_every_message_stands_at_its_place_and_no_two_could_be_i
             words |= {*parts}
     assert not [message for message, pairs in alike.items() if pairs]
     named = {text for text in page if any(re.fullmatch(pattern(text), word) for word in words)}
-    assert page == {*alike} | named | WORDS
+    assert page == {*alike} | named | WORDS, "on the left alone: messages without a case"
     assert not same("t = 2 s: 1 N", "t = 1 s: 2 N") and not same("1 N", "1 m")

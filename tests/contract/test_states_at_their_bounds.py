@@ -11,9 +11,12 @@ import pytest
 from contract.test_serialization import HEADER, signed, words_of
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK, Values
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import variables
 from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
 from wheelfmu.truth.sliding import ROAD, THROWN
 
+PARAMETERS = len(variables((ROOT / "modelDescription.xml").read_bytes(), "parameter"))
 MOST, COUNT = float(np.finfo(float).max), 2**53
 FORGED = "fmi2SetFMUstate: a number is out of its bounds."
 Bound = int | float | None
@@ -22,8 +25,8 @@ Field = tuple[str, int, Bound, Bound]  # a name, how often it stands there, its 
 
 def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> list[Field]:
     """In their order. Whole numbers have whole bounds. `stages`: rows of rates of the engine at work."""
-    found: list[Field] = [("parameter", 28, None, None), ("start_time", 1, -MOST, MOST), ("stop_time", 1, -MOST, inf)]
-    found += [("tolerance", 1, 1e-13, 1e-4)]
+    found: list[Field] = [("parameter", PARAMETERS, None, None), ("start_time", 1, -MOST, MOST)]
+    found += [("stop_time", 1, -MOST, inf), ("tolerance", 1, 1e-13, 1e-4)]
     for k in range(9):
         name = "derivatives" if k < 7 else "derivatives of a carrier's rate"
         found += [("input", 1, None, None), (name, 3, -MOST, MOST)]

@@ -1,4 +1,7 @@
-"""Starts that no wheel can have, the FMU's message, and a start beside it that a wheel can have. SI."""
+"""Starts that no wheel can have, the FMU's message, and a start beside it that a wheel can have. SI.
+
+A start gives every parameter that its message depends on: those that share none are also tried together.
+"""
 
 from math import inf, nan, pi
 
