@@ -1,10 +1,14 @@
 """What both pages share: keys, mouse, cards, tooltips, and their layout on a screen and on a phone."""
 
+import re
+
 import numpy as np
 import pytest
 from page.pages import opened, window_of
 from playwright.sync_api import BrowserContext
 from support.bounds import beyond, within
+
+from wheelfmu.fmu.paths import ROOT
 
 CAMERA = "[...page.stage.camera.position]"
 
@@ -76,6 +80,24 @@ def test_every_button_has_a_tooltip_and_every_diagram_a_name(either):
     assert len(tooltips) > 20 and [button for title, button in tooltips if not title] == []
     diagrams = either.eval_on_selector_all(".plot:not([hidden]) canvas", "all => all.map((x) => x.ariaLabel)")
     assert len(set(diagrams)) == len(diagrams) > 2 and all(len(name) > 20 for name in diagrams)  # for screen readers
+
+
+CONTROLS = "header > button, #toggles label, #live .tabs button, .push, summary, label.keep"
+ARROWS = str.maketrans("", "", "⤓◀▶")
+
+
+def unnamed(controls: list[str], guide: str) -> list[str]:
+    """Controls whose name does not begin with a phrase that the guide sets in italics or bold."""
+    marked = re.findall(r"\*+([^*]+)\*+", " ".join(guide.lower().split()))
+    names = (control.translate(ARROWS).strip().lower() for control in controls)
+    return [name for name in names if not any(name.startswith(phrase.strip(".")) for phrase in marked)]
+
+
+def test_the_guide_names_every_control_of_the_live_page(live):
+    controls = live.locator(CONTROLS).all_inner_texts()
+    guide = (ROOT / "docs" / "page.md").read_text(encoding="utf-8")
+    assert len(controls) > 14 and unnamed(controls, guide) == []
+    assert unnamed(controls, guide.replace("*Values*", "").replace("*◐*", "")) == ["values", "◐"]
 
 
 def test_a_site_that_shows_the_page_sets_its_colours_and_has_the_only_button_for_them(browser, recorded_file):
