@@ -17,6 +17,7 @@ from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
 from wheelfmu.truth.sliding import ROAD, THROWN
 
 PARAMETERS = len(variables((ROOT / "modelDescription.xml").read_bytes(), "parameter"))
+EVENTS = 8  # names of `Event` in run.hpp, `none` included
 MOST, COUNT = float(np.finfo(float).max), 2**53
 FORGED = "fmi2SetFMUstate: a number is out of its bounds."
 Bound = int | float | None
@@ -30,11 +31,11 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
     for k in range(9):
         name = "derivatives" if k < 7 else "derivatives of a carrier's rate"
         found += [("input", 1, None, None), (name, 3, -MOST, MOST)]
-    found += [("news", 1, 0, 2), ("slides", 1, 0, 1), ("phase", 1, 0, 12), ("ended by", 1, 0, 7)]
+    found += [("news", 1, 0, 2), ("slides", 1, 0, 1), ("phase", 1, 0, 12), ("ended by", 1, 0, EVENTS - 1)]
     found += [("s, mu_max, mu_slide", 3, 0.0, MOST), ("slope", 1, 0.0, pi / 2), ("slope_direction", 1, -MOST, MOST)]
     found += [("law", 1, 0, 4), ("sigma", 1, -1.0, 1.0), ("layered", 1, 0, 1), ("contact", 1, 0, 1)]
     found += [("origin", 1, -MOST, MOST), ("polynomials", 36, -MOST, MOST), ("t, last change", 2, -MOST, MOST)]
-    found += [("grip due", 1, 0.0, inf), ("y", 12, -MOST, MOST), ("below, observed", 16, 0, 1)]
+    found += [("grip due", 1, 0.0, inf), ("y", 12, -MOST, MOST), ("below, observed", 2 * EVENTS, 0, 1)]
     found += [("transitions", 1, 0, COUNT), ("counted", 5, 0, COUNT)]
     if phase != STEPPING:
         return found
