@@ -45,8 +45,7 @@ def rig(report: Report) -> dict[str, object]:
     found |= {"repeat": 100 * repeat.max(), "inertia": 100 * (rows["C_inertia"].abs() / rows["C"]).max()}
     found |= {"again": 100 * (means["C again"] / means["C"] - 1).abs().max(), "load_least": least, "load_most": most}
     found |= {"load_exponent": np.log(strong / weak) / np.log(most / least)}
-    found |= {name: tables[name] for name in RIG}
-    return found | {"C_least": 1e3 * weak / least, "C_most": 1e3 * strong / most}
+    return found | {name: tables[name] for name in RIG}
 
 
 def equivalent(run: pd.DataFrame, C: float) -> dict[str, float]:

@@ -184,7 +184,6 @@ def car_steps(report: Report) -> dict[str, float]:
         "rollback": moving(every)["rollback", 1000 * STEPS[-1]],
         "step": 1000 * LANE.h,
         "step_course": taken["course"].max(),
-        "step_time": taken["computing time"].max(),
     }
 
 

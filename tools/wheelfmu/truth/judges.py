@@ -140,8 +140,6 @@ class Verdict:
     faults: list[str] = field(default_factory=list)
     claimed: bool = True  # the tolerance is within those for which the case promises anything
     steps: int = 0
-    events: int = 0
-    seconds: float = 0.0
 
     @property
     def holds(self) -> bool:
@@ -158,12 +156,12 @@ def outcome_of(run: Run) -> str:
 
 def judge(case: Case, tolerance: float, done: Run, table: Solution | None) -> Verdict:
     outcome = outcome_of(done)
-    verdict = Verdict(tolerance, outcome, seconds=done.seconds, claimed=tolerance <= case.loosest)
+    verdict = Verdict(tolerance, outcome, claimed=tolerance <= case.loosest)
     if outcome != case.expect.kind:
         verdict.faults.append(f"{outcome} instead of {case.expect}: {' '.join(done.messages[-1:])}")
     if not done.columns:
         return verdict
-    verdict.steps, verdict.events = done.counters["n_steps"], done.counters["n_events"]
+    verdict.steps = done.counters["n_steps"]
     if not all(np.isfinite(column).all() for name, column in done.columns.items() if name != "mu_required"):
         verdict.faults.append("an output is not finite")
         return verdict
