@@ -88,31 +88,6 @@ ROLLING = {"theta_start": np.pi / 2, "phi_dot_start": -60.0}
 FULL = gripping_torque(PAPER, 1.0)  # N m: an upright wheel that brakes so requires lambda_x = N
 
 
-def grip_warnings(w: FMU2Wheel) -> list[str]:
-    return [text for text in w.texts() if "more than a dry road gives" in text]
-
-
-def braked(w: FMU2Wheel, until: float, h: float, mu_max: float = 0.0) -> FMU2Wheel:
-    """A brake that grows by 100 N m/s from a little below its full capacity."""
-    w.start(mu_max=mu_max, **ROLLING)
-    for k in range(round(until / h)):
-        w.give({"M_brake": (FULL - 20 + 100 * k * h, 100.0)}).by(h)
-    return w
-
-
-@pytest.mark.parametrize("h", [0.001, 0.01, 0.3])
-def test_a_road_without_a_limit_warns_once_where_rolling_requires_a_coefficient_above_one(wheel, h):
-    w = braked(wheel(), 0.3, h)
-    (text,) = grip_warnings(w)
-    instant = float(text.split()[2])
-    late = np.sqrt(0.35 / 9.81) / 16 + h  # it looks so often, at the ends of the solver's steps
-    assert 0.2 <= instant <= 0.2 + late
-    mu = float(text.split("mu_required = ")[1].split(",")[0])
-    within(abs(mu - (1 + 100 * (instant - 0.2) / FULL)), 0.006, "coefficient, three digits")
-    assert grip_warnings(braked(wheel(), 0.15, h)) == []  # the partners: below one, and with a limit
-    assert grip_warnings(braked(wheel(), 0.3, h, mu_max=3.0)) == []
-
-
 def onto(w: FMU2Wheel, mu_max: float, before: float) -> FMU2Wheel:
     """A wheel that requires 0.5 rolls onto another road after 0.25 s."""
     return w.start(mu_max=before, **ROLLING).put(M_brake=FULL / 2).to(0.25).put(mu_max=mu_max)

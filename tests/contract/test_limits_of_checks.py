@@ -13,7 +13,7 @@ from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wh
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER, SWINGS
-from wheelfmu.truth.sliding import HUB, ROAD, SLIDES, THROWN, gripping_torque
+from wheelfmu.truth.sliding import ROAD, THROWN, gripping_torque
 
 WEIGHT = PAPER.m * PAPER.g
 sides = pytest.mark.parametrize("side", [1, -1])
@@ -88,20 +88,23 @@ def test_the_grip_of_a_dry_road_is_warned_of_beyond_it_on_a_road_without_a_limit
     assert GRIP not in texts_of(wheel().back(blob).to(0.6)) and GRIP not in texts_of(w.to(0.6))
 
 
+@pytest.mark.parametrize("h", [0.001, 0.01, 0.3])
+def test_the_grip_of_a_dry_road_is_warned_of_within_a_sixteenth_of_the_wheels_own_time(wheel, h):
+    """In a brake that grows by 100 N m/s and exceeds the grip from 0.2 s on; test_messages.py has the coefficient."""
+    w = wheel().start(theta_start=pi / 2, phi_dot_start=-60.0)
+    for k in range(round(0.3 / h)):
+        w.give({"M_brake": (FULL - 20 + 100 * k * h, 100.0)}).by(h)
+    assert GRIP in (text := w.said())
+    late = np.sqrt((PAPER.r_0 + PAPER.r) / PAPER.g) / 16 + h  # it looks so often, at the ends of the solver's steps
+    assert 0.2 <= float(text.split()[2]) <= 0.2 + late
+
+
 def test_the_grip_of_a_wheel_that_nothing_loads_is_never_warned_of(wheel):
     """Down a slope it needs tan(slope) / (1 + m R^2 / J_z)."""
     steep = {**AT_REST, "psi_start": 0.0, "slope": 1.3}
     w, loaded = wheel().start(**steep).to(0.2), wheel().start(**steep, F_X=1e-6).to(0.2)
     assert w.get("mu_required")[0] > 1.3 and w.texts() == []
     assert GRIP in texts_of(loaded)  # the partner
-
-
-@pytest.mark.parametrize(("tolerance", "warned"), [
-    (None, False), (1e-13, False), (1e-4, False), (9.99e-14, True), (1.001e-4, True), (1e-8, False), (1e300, True),
-])  # fmt: skip
-def test_a_tolerance_is_warned_of_outside_its_limits_alone(wheel, tolerance, warned):
-    w = wheel().start(tolerance=tolerance)
-    assert ("The tolerance" in texts_of(w)) == warned
 
 
 UPRIGHT = "exactly upright"
@@ -165,17 +168,6 @@ def test_the_start_of_a_guided_wheel_is_warned_of_where_it_is_the_papers_and_sou
     assert "keeps the paper's" not in texts_of(w)
     w.exitInitializationMode()
     assert texts_of(w).count("keeps the paper's") == warned
-
-
-def test_a_jam_is_warned_of_where_forces_are_read_after_a_road_was_set_and_once_it_slides_alone(wheel):
-    w = wheel().start(**SLIDES["jams"].start | {"mu_max": 0.5, "mu_slide": 0.4}).to(0.001)
-    assert w.put(mu_max=9.0, mu_slide=0.6).get("lambda_3")[0] > 0 and w.texts() == []
-    w.put(mu_slide=5.0).get("mu_slide", "mu_max", "F_X")  # no force is read
-    assert w.texts() == []
-    w.get("lambda_3", "lambda_1", "theta_ddot")
-    assert len(w.texts()) == 1
-    rolls = wheel().start(**{**HUB, "theta_start": 0.87}, mu_max=9.0, mu_slide=0.4).to(0.001).put(mu_slide=8.0)
-    assert rolls.get("contact_mode") == [0] and rolls.get("lambda_3") and rolls.texts() == []
 
 
 def test_a_change_to_another_law_is_no_transition_and_is_not_logged(wheel):

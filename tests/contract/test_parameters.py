@@ -75,13 +75,19 @@ def test_parameters_and_inputs_set_in_initialization_mode_act_at_once(wheel):
     assert late.run([1.0]) == early.run([1.0])
 
 
-@pytest.mark.parametrize(("given", "used"), [(0.1, "0.0001"), (np.inf, "0.0001"), (1e-16, "1e-13")])
-def test_a_tolerance_beyond_the_limits_is_clamped_with_one_warning(wheel, given, used):
-    w, at_limit = wheel().start(tolerance=given), wheel().start(tolerance=float(used))
-    text = f"The tolerance {given:g} is outside [1e-13, 0.0001]; {used} is used."
-    assert w.take_messages() == [(WARNING, "logStatusWarning", text)]
-    assert w.run([0.5]) == at_limit.run([0.5]) != wheel().start().run([0.5])
-    assert at_limit.take_messages() == w.take_messages() == []
+TAKEN: list[tuple[float | None, float]] = [(1e-13, 1e-13), (1e-8, 1e-8), (None, 1e-8), (1e-4, 1e-4)]
+CLAMPED: list[tuple[float | None, float]] = [(1e-16, 1e-13), (9.99e-14, 1e-13)]
+CLAMPED += [(given, 1e-4) for given in (1.001e-4, 0.1, 1e300, np.inf)]
+
+
+@pytest.mark.parametrize(("given", "used"), TAKEN + CLAMPED)
+def test_a_tolerance_beyond_the_limits_is_clamped_with_one_warning_and_any_other_is_taken(wheel, given, used):
+    w, other = wheel().start(tolerance=given), wheel().start(tolerance=used)
+    text = f"The tolerance {given} is outside [1e-13, 0.0001]; {used} is used."
+    warned = [(WARNING, "logStatusWarning", text)] if (given, used) in CLAMPED else []
+    assert w.take_messages() == warned
+    assert w.run([0.5]) == other.run([0.5]) != wheel().start(tolerance=1e-10).run([0.5])
+    assert other.take_messages() == w.take_messages() == []
 
 
 def test_experiments_that_make_no_sense_are_refused_and_an_infinite_stop_time_is_none(wheel):
