@@ -79,7 +79,7 @@ def friction(library: Library) -> Iterator[Case]:
 def values(library: Library) -> Iterator[Case]:
     """Refused at the end of initialization (test_parameters.py: word for word), or during the run."""
     yield from ((text, text) for _, text, _ in REFUSALS)
-    w = started(library, s=0.03, slope=0.1, F_X=3.0)
+    w = started(library, s=0.03, slope=0.1, F_X=3.0, mu_max=0.9)
     carrier = "only the carrier of a guided wheel turns, by co-simulation; the value stays 0."
     for name, value, why in (
         ("s", -0.5, "it must be at least 0; the value stays 0.03."),

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import simpson, solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import ERROR, OK, STATES, Value, shifted
+from wheelfmu.fmu.driver import OK, STATES, Value, shifted
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
@@ -590,9 +590,3 @@ def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) 
     wheel.place(1.0, done.y[:, -1])
     want = [run[name][-1] for name in ("M_guide_1", "M_guide_2")]
     within(absolute_error(wheel.get("M_guide_1", "M_guide_2"), want), 64 * 10 * EPSILON, "carrier's moment, N m")
-
-
-@pytest.mark.parametrize("name", ["theta_dot_start", "psi_dot_start"])
-def test_a_guided_wheel_whose_axle_turns_at_the_start_is_rejected(library: Library, name: str) -> None:
-    done = attempt(library, {"guided": True, name: 0.1}, [0.0, 1.0])
-    assert done.status == ERROR and done.messages[0].endswith("rad/s: a guided wheel needs 0 for both.")

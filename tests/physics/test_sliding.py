@@ -14,7 +14,6 @@ from wheelfmu.truth import sliding
 from wheelfmu.truth.closed_forms import circle
 from wheelfmu.truth.errors import kind_errors
 from wheelfmu.truth.motion import Library, Run, start_values
-from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.reference import Wheel
 from wheelfmu.truth.reference.judge import carrier_axes, momenta
 from wheelfmu.truth.scenes import Scene
@@ -212,18 +211,6 @@ def test_a_sliding_wheel_lifts_off_and_lies_flat_at_the_references_instants(libr
     within(abs(run.end - ended.time), 1e-8, "instant of the ending, s")
     rolling = library.simulate([0.0, 3.0], 1e-10, **{k: v for k, v in start.items() if k[:2] not in ("mu", "sl")})
     beyond(abs((rolling.end or 3.0) - ended.time), 1e-4, "instant of the wheel that rolls, s")
-
-
-@pytest.mark.parametrize("wrong", [
-    {"mu_max": 0.3, "mu_slide": 0.4},
-    {"mu_slide": 0.3},
-    {"mu_max": 0.3, "slip_x_start": 1.0},
-    {"slip_y_start": 1.0},
-])  # fmt: skip
-def test_a_road_that_cannot_be_is_rejected_and_names_the_parameter(library: Library, wrong: dict[str, float]) -> None:
-    done = attempt(library, wrong, [0.0, 0.1])
-    assert done.status == ERROR and "mu_slide" in done.messages[-1]
-    assert attempt(library, {**wrong, "mu_max": 0.4, "mu_slide": 0.4}, [0.0, 0.1]).status == OK
 
 
 def test_inputs_that_change_at_every_step_of_a_slide_cost_a_short_step_each(library: Library) -> None:
@@ -436,12 +423,3 @@ def test_the_paper_s_wheel_loses_no_energy_on_ice(library: Library) -> None:
         assert wheel.get("contact_mode", "lambda_1", "lambda_2") == [SLIDING, 0.0, 0.0]
         wheel.back(wheel.serialized()).put(mu_max=0.01).to(0.7)
         beyond(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy on mu_max = 0.01, relative")
-
-
-def test_a_wheel_that_starts_without_mu_slide_never_slides(library: Library) -> None:
-    with library.wheel(logging=True) as wheel:
-        wheel.start(**{**UPRIGHT, **ROAD, "mu_slide": 0.0}).to(0.1)
-        assert wheel.set(mu_slide=0.4) == DISCARD
-        assert "mu_slide = 0.4: whether the wheel can slide is decided at the start" in wheel.sentences[-1]
-        assert wheel.sentences[-1].endswith("the value stays 0.")
-        assert wheel.put(mu_slide=0.0).get("mu_slide") == [0.0]

@@ -10,6 +10,7 @@ from wheelfmu.fmu.driver import Values
 NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
 TRIANGLE = "kg m2: none may exceed the sum of the other two."
 STANDS = "the wheel must stand above the ground, 0 < theta < 3.14159."
+STEADY = "a guided wheel needs 0 for both."
 CARRIER = "only the carrier of a guided wheel turns, by co-simulation; else they and their derivatives must be 0."
 REFUSALS: list[tuple[Values, str, Values]] = [
     ({"m": nan}, f"m = nan: {NUMBER}", {"m": 1e-3}),
@@ -39,8 +40,16 @@ REFUSALS: list[tuple[Values, str, Values]] = [
     ({"M_2": nan}, f"M_2 = nan: {NUMBER}", {"M_2": 1.0}),
     (
         {"guided": True, "psi_dot_start": 0.5, "theta_dot_start": -0.75},
-        "psi_dot_start, theta_dot_start = 0.5, -0.75 rad/s: a guided wheel needs 0 for both.",
+        f"psi_dot_start, theta_dot_start = 0.5, -0.75 rad/s: {STEADY}",
         {"guided": False, "psi_dot_start": 0.5, "theta_dot_start": -0.75},
+    ),
+    *(
+        (
+            {"guided": True, f"{angle}_dot_start": 0.1},
+            f"psi_dot_start, theta_dot_start = {both} rad/s: {STEADY}",
+            {"guided": False, f"{angle}_dot_start": 0.1},
+        )
+        for angle, both in (("psi", "0.1, 0"), ("theta", "0, 0.1"))
     ),
     (
         {"mu_slide": 0.123456789123},
@@ -57,6 +66,14 @@ REFUSALS: list[tuple[Values, str, Values]] = [
         "slip_x_start, slip_y_start = 0.5, -0.75 m/s: an initial slip needs mu_slide.",
         {"slip_x_start": 0.0, "slip_y_start": 0.0},
     ),
+    *(
+        (
+            {"mu_max": 0.4, "mu_slide": 0.0, f"slip_{axis}_start": 1.0},
+            f"slip_x_start, slip_y_start = {both} m/s: an initial slip needs mu_slide.",
+            {"mu_max": 0.4, "mu_slide": 0.4, f"slip_{axis}_start": 1.0},
+        )
+        for axis, both in (("x", "1, 0"), ("y", "0, 1"))
+    ),
     (
         {"psi_start": 1e13},
         "psi_start = 1e+13 rad: beyond 1e+12 rad an angle has too few digits.",
@@ -71,6 +88,14 @@ REFUSALS: list[tuple[Values, str, Values]] = [
         {"guided": False, "psi_dot_guide": 0.5, "theta_dot_guide": -0.75},
         f"psi_dot_guide, theta_dot_guide = 0.5, -0.75 rad/s: {CARRIER}",
         {"guided": True, "psi_dot_guide": 0.5, "theta_dot_guide": -0.75},
+    ),
+    *(
+        (
+            {"guided": False, f"{angle}_dot_guide": 0.1},
+            f"psi_dot_guide, theta_dot_guide = {both} rad/s: {CARRIER}",
+            {"guided": True, f"{angle}_dot_guide": 0.1},
+        )
+        for angle, both in (("psi", "0.1, 0"), ("theta", "0, 0.1"))
     ),
     (
         {"m": 1.7e308},
