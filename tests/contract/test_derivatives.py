@@ -85,19 +85,32 @@ def difference_jacobian(w: FMU2Wheel, h: float = 0.5, knowns: Sequence[str] = LO
 
 
 LOADED = KINDS | {"sliding, braked": {**ROAD, **THROWN, "s": 0.01, "M_brake": 5.0}}
+for _form in ("reduced", "multibody"):
+    LOADED |= {f"{name}, {_form}": {**SCENES[name], "formulation": _form} for name in ("steered", "steered, slides")}
 
 
 @pytest.mark.parametrize("scene", LOADED)
 def test_directional_derivatives_are_those_of_the_reactions(wheel, scene):
-    w = wheel().initializing(**LOADED[scene])
+    """By loads, and by a carrier's rates."""
+    steered = "steered" in scene
     knowns = (*LOADS, "M_brake") if "M_brake" in LOADED[scene] else LOADS
-    checked = [(jacobian(w, knowns), difference_jacobian(w, knowns=knowns))]
+
+    def both(w: FMU2Wheel) -> tuple[Array, Array]:
+        found, quotients = jacobian(w, knowns), difference_jacobian(w, knowns=knowns)
+        if steered:
+            by_rates = [difference(w, outputs(w), name, 0.05, range(-4, 5)) for name in TURN]
+            found, quotients = np.hstack([found, jacobian(w, [*TURN])]), np.column_stack([quotients, *by_rates])
+        return found, quotients
+
+    w = wheel().initializing(**LOADED[scene]).give(TURN if steered else {})
+    checked = [both(w)]
     assert w.exitInitializationMode() == OK
-    for t in (0.25, 1.0, 3.0) if scene in KINDS else (0.1,):
-        checked.append((jacobian(w.to(t), knowns), difference_jacobian(w, knowns=knowns)))
+    for t in (0.0, 0.1) if steered else (0.25, 1.0, 3.0) if scene in KINDS else (0.1,):
+        checked.append(both(w.to(t).put(F_X=t) if steered else w.to(t)))
     for exact, quotient in checked:
         errors = dict(zip(outputs(w), np.abs(exact - quotient).max(axis=1), strict=True))
-        within(errors, 64 * 200 * EPSILON, "derivative off the difference")  # of reactions of 200 N
+        bound = 1e-8 if steered else 64 * 200 * EPSILON  # of reactions of 200 N, which the rates enter as squares
+        within(errors, bound, "derivative off the difference")
         answers = np.any(quotient != 0, axis=1)  # whatever its name: no output is left out
         assert np.all(exact[~answers] == 0)
         assert np.linalg.matrix_rank(exact[answers], 1e-3) >= (3 if scene in KINDS else 2)
