@@ -1,6 +1,6 @@
 """Saving where two conditions meet: a restored wheel goes on with the bits and messages of the one that was saved, and
 saving leaves no trace, whatever is under way at once: a pull with friction or a slip, a polynomial that goes on or
-whose value stays, a layer, an event that is known and not reached, a brake, a carrier that turns.
+whose value stays, a road that changes, a layer, an event that is known and not reached, a brake, a carrier that turns.
 """
 
 import re
@@ -20,8 +20,8 @@ Inputs = dict[str, tuple[float, ...]]
 
 class Meeting(NamedTuple):
     """A scene under inputs from its start, `how` they are set: once; again at each step, as one polynomial that is cut;
-    at each step as the same polynomial from its beginning; or as values that jump. `meets`: what must be under way at
-    once where states are saved.
+    at each step as the same polynomial from its beginning; as values that jump, those of a road too; or late, from half
+    the time on. `meets`: what must be under way at once where states are saved.
     """
 
     values: Values
@@ -36,6 +36,8 @@ CUBIC |= {"M_3": (0.5, -2.0, 1.0, 0.5), "F_Y": (0.0, 1.0, 1.0, -1.0), "M_1": (0.
 BRAKE: Inputs = {"M_brake": (6.0, -14.0, 8.0, 2.0), "M_3": (-4.0, 9.0)}
 PULL: Inputs = {"F_Z": (100.0, 400.0, -300.0), "M_3": (4.0, -9.0)}
 TURN: Inputs = {"psi_dot_guide": (0.4, 0.5, -0.3, 0.1), "theta_dot_guide": (-0.1, 0.3, -0.2), "F_X": (4.0, -20.0)}
+PUSH: Inputs = {"M_1": (1e-6,)}
+WAY: Inputs = {"slope": (0.3, 0.2), "slope_direction": (-1.0, 2.0), "s": (0.02, 0.01)}
 STIFF = SCENES["stiff law"].start
 
 
@@ -57,6 +59,13 @@ def brakes(now: dict[str, float]) -> bool:
 
 MEETINGS = {
     "a pull, unfolded": Meeting(PULLED, meets=pulls),
+    "a pull that was logged, a push off the orbit": Meeting(PULLED, PUSH, "late", meets=pulls),
+    "a pull ahead, a push off the orbit": Meeting(
+        {"keep_contact": True, "psi_dot_start": 5.0, "theta_dot_start": 3.0, "phi_dot_start": 4.0},
+        PUSH,
+        "late",
+        stop=0.375,  # pushed at 0.1875 s, pulls at 0.2096 s
+    ),
     "a pull, friction": Meeting({**PULLED, "s": 0.02}, meets=pulls),
     "a pull, friction, a cubic that goes on": Meeting({**PULLED, "s": 0.02}, CUBIC, "cut", meets=pulls),
     "a pull by a load, held by the brake": Meeting(
@@ -78,6 +87,20 @@ MEETINGS = {
     "a cubic that begins anew at each step": Meeting({"s": 0.02}, CUBIC, "anew"),
     "loads that jump": Meeting({"s": 0.01, "method": 4}, CUBIC, "jump"),
     "a slip, loads that jump": Meeting({**ROAD, **THROWN, "s": 0.01}, CUBIC, "jump", meets=slides),
+    "a road that changes": Meeting(GENERAL, WAY, "jump"),
+    "a slip, a road that changes": Meeting(
+        {**ROAD, **THROWN}, WAY | {"mu_max": (0.3, 0.2), "mu_slide": (0.2, 0.15)}, "jump", meets=slides
+    ),
+    "a slip on ice, loads that jump": Meeting(
+        {**ROAD, "s": 0.01}, {"mu_max": (0.0, 0.0), "M_3": (-1.0, 3.0), "F_Y": (0.0, 2.0)}, "jump", meets=slides
+    ),
+    "a limit of the grip that is set on the way": Meeting(
+        {**AT_REST, "phi_dot_start": -60.0},
+        {"mu_max": (0.6, 0.2), "M_brake": (50.0, -20.0)},
+        "jump",
+        meets=brakes,
+        stop=0.3125,  # ends after 0.25 s
+    ),
     "a cubic, multibody, Adams": Meeting({**GENERAL, "s": 0.02, "formulation": 3, "method": 2}, CUBIC, "cut"),
     "a cubic, BDF, regularized": Meeting({"s": 0.02, "friction_law": 2, "omega_s": 0.01, "method": 3}, CUBIC, "cut"),
     "a slip, a cubic": Meeting({**ROAD, **THROWN, "s": 0.01}, CUBIC, "cut", meets=slides),
@@ -111,6 +134,11 @@ MEETINGS = {
         "cut",
         meets=slides,
     ),
+    "a rest in a soft law": Meeting(
+        {**AT_REST, "guided": True, "s": 0.003, "friction_law": 2, "omega_s": 3e-3, "phi_dot_start": -2.0},
+        {"M_brake": (20.0,), "M_3": (7.0,)},
+        meets=brakes,
+    ),
     "a lift-off ahead": Meeting({"s": 0.01}, {"F_Z": (0.0, 150.0)}, "cut", stop=1.6),
     "a fall ahead": Meeting({"theta_start": 0.6, "phi_dot_start": 0.0, "psi_dot_start": 0.2, "s": 0.05}),
 }
@@ -124,8 +152,10 @@ def step(w: FMU2Wheel, meeting: Meeting, t: float) -> list[object]:
     w.take_messages()
     if meeting.how == "cut" or (meeting.how == "anew" and w.time > 0):
         w.give(meeting.inputs, w.time if meeting.how == "cut" else 0.0)
+    if meeting.how == "late" and w.time >= meeting.stop / 2:
+        w.give(meeting.inputs)
     if meeting.how == "jump":
-        w.put(**{name: c[0] * cos(9 * w.time) for name, c in meeting.inputs.items()})
+        w.put(**{name: c[0] + c[1] * cos(9 * w.time) for name, c in meeting.inputs.items()})
     return [w.step_to(t), w.bits(), w.rates(RATES)(), w.get(*meeting.inputs), w.texts()]
 
 
@@ -138,7 +168,8 @@ def steps(w: FMU2Wheel, meeting: Meeting, times: list[float]) -> list[list[objec
 
 
 def started(w: FMU2Wheel, meeting: Meeting) -> FMU2Wheel:
-    return w.start(tolerance=1e-7, **meeting.values).give(meeting.inputs)
+    w.start(tolerance=1e-7, **meeting.values)
+    return w if meeting.how in ("jump", "late") else w.give(meeting.inputs)
 
 
 def instants(seen: list[list[object]]) -> list[float]:
@@ -177,11 +208,15 @@ ROAD_AND_INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake")
 ROAD_AND_INPUTS += ("s", "mu_max", "mu_slide", "slope", "slope_direction")
 
 
-def test_what_is_set_and_not_in_force_yet_is_part_of_the_state_while_a_polynomial_goes_on(wheel):
-    w = wheel().start(s=0.02, mu_max=0.9, mu_slide=0.8, slope=0.1).give(CUBIC).to(0.5).give(CUBIC, 0.5)
+@pytest.mark.parametrize(
+    ("start", "contact"), [({"mu_max": 0.9, "mu_slide": 0.8}, 0), ({"mu_max": 0.2, "mu_slide": 0.2, **THROWN}, 1)]
+)
+def test_what_is_set_and_not_in_force_yet_is_part_of_the_state_while_a_polynomial_goes_on(wheel, start, contact):
+    w = wheel().start(s=0.02, slope=0.1, M_brake=5.0, **start).give(CUBIC).to(0.5).give(CUBIC, 0.5)
+    assert w.get("contact_mode") == [contact]
     blob, ahead = w.serialized(), w.to(0.6).bits()
     for name in ROAD_AND_INPUTS:
-        news = w.back(blob).put(**{name: w.get(name)[0] + 1e-3}).serialized()
+        news = w.back(blob).put(**{name: w.get(name)[0] - 1e-3}).serialized()
         restored = wheel().back(news)
         assert restored.get(*ROAD_AND_INPUTS) == w.get(*ROAD_AND_INPUTS), name
         assert restored.to(0.6).bits() == w.to(0.6).bits() != ahead, name

@@ -125,11 +125,10 @@ def test_a_slope_set_before_the_first_step_is_that_of_the_start_to_the_bit(libra
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Library, seed: int) -> None:
-    """Beside a wheel that starts there; the energy jumps by the weight's turn about the origin. On the way the state is
-    saved with the next road asked for and in force: a restored wheel has the same bits."""
+    """Beside a wheel that starts there; the energy jumps by the weight's turn about the origin."""
     values = {**random_scene(np.random.default_rng(seed)).start, "slope": 0.3}
     names = ("X_O", "Y_O", "theta", "psi", "phi", "omega_z")
-    with library.wheel() as wheel, library.wheel() as fresh, library.wheel() as restored:
+    with library.wheel() as wheel, library.wheel() as fresh:
         wheel.start(tolerance=1e-11, **values).to(0.4)
         reached = ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot", "X_O", "Y_O")
         there = dict(zip((f"{name}_start" for name in reached), wheel.get(*reached), strict=True))
@@ -138,11 +137,7 @@ def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Li
         jump = wheel.put(slope=0.6, slope_direction=-2.0).get("E")[0] - E
         within(abs(jump + 20.0 * change @ place) / E, 32 * EPSILON, "jump of the energy less the weight's, relative")
         beyond(abs(jump) / E, 1e-4, "jump of the energy, relative")
-        pending = wheel.serialized()
-        in_force = wheel.to(0.5).serialized()
-        end = wheel.to(0.8).bits()
-        for state, times in ((pending, (0.5, 0.8)), (in_force, (0.8,))):
-            assert restored.back(state).to(*times).bits() == end
+        wheel.to(0.8)
         fresh.start(tolerance=1e-11, **values | there | {"slope": 0.6, "slope_direction": -2.0}).to(0.4)
         within(absolute_error(wheel.get(*names), fresh.get(*names)), 1e-10, "state, m, rad, rad/s")
         fresh.put(slope=0.6 + 1e-5).to(0.5)

@@ -42,19 +42,6 @@ def test_a_ground_that_pulls_by_rounding_alone_is_not_logged(wheel, phi_dot):
     assert pulls_of(w.to(0.01, 0.1)) == []
 
 
-@pytest.mark.parametrize("method", [1, 2, 4])
-@pytest.mark.parametrize("t", [0.3, 0.35, 0.4, 0.45, 0.5, 0.55])
-def test_a_restored_run_logs_a_pull_that_the_saved_one_has_ahead(wheel, method, t):
-    """Saved while the ground pulls or presses; afterwards a small push, which takes the run off the orbit."""
-    w = wheel().start(method=method, **PULLED).to(t)
-    other = wheel().back(w.serialized())
-    logged = len(pulls_of(w))
-    for each in (w, other):
-        assert each.put(M_1=1e-6).to(1.0, 3.0).terminate() == OK
-    assert len(pulls_of(w)) == 1 and pulls_of(other) == pulls_of(w)[logged:]
-    assert w.bits() == other.bits()
-
-
 def test_a_run_whose_orbit_is_built_where_the_ground_pulls_has_the_state_of_one_that_finds_it_built(wheel):
     """At its highest, where the orbit has been followed to, the ground pulls; at the start it presses."""
     start = {"theta_start": 0.2978, "psi_dot_start": -11.7446, "theta_dot_start": -4.4802, "phi_dot_start": 18.5632}

@@ -238,13 +238,10 @@ def test_a_rest_costs_about_the_same_at_every_width(library: Library, rest: str,
     within(max(ratios), 3, "cost over that of a neighbour")
 
 
-def test_a_rest_in_a_soft_law_depends_on_no_communication_point_and_survives_a_snapshot(wheel) -> None:
+def test_a_rest_in_a_soft_law_depends_on_no_communication_point(wheel) -> None:
     start = {"guided": True, "theta_start": np.pi / 2, "friction_law": 2, "omega_s": 3e-3, **RESTS["torque"]}
     ends = [wheel().start(**start).to(*np.arange(1, count + 1) * (3 / count)).bits() for count in (1, 30, 3000)]
-    w = wheel().start(**start)
-    for t in np.arange(0.1, 3, 0.1):
-        w = wheel().back(w.to(t).serialized())
-    assert len({*ends, w.to(3.0).bits()}) == 1
+    assert len({*ends}) == 1
     omega_z = np.frombuffer(wheel().start(**start).to(3.0).read(["omega_z"]))[0]
     capacity = 0.003 * 20 * 9.81 + 20  # tanh(omega_z / omega_s) times it balances the torque
     within(abs(omega_z - 3e-3 * np.arctanh(7 / capacity)), 1e-12, "spin at rest, rad/s")
