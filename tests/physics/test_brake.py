@@ -1,4 +1,4 @@
-"""The dry brake M_brake on an upright wheel: stop, hold and release against closed forms.
+"""The dry brake M_brake on an upright wheel: hold and release against closed forms; it stops one: test_straight.py.
 
 Upright (theta = 90 deg), heading along X (psi = 0): omega_z = phi_dot, v = -R omega_z, R = r_0 + r; the inertia that a
 moment about the axle turns is J = J_z + m R^2. SI units.
@@ -18,19 +18,6 @@ BRAKE = 20.0  # N m
 
 def braked(library: Library, times: list[float], inputs: dict[str, tuple[float, ...]], **start: float) -> Run:
     return library.simulate(times, 1e-10, Schedule(((0.0, inputs),)), **(UPRIGHT | start))
-
-
-def test_it_stops_the_wheel_at_its_instant_and_after_its_distance(library: Library) -> None:
-    run = braked(library, [0.0, 1.5, 2.0], {"M_brake": (BRAKE,)})
-    instant, distance = 5.0 * J / BRAKE, R * 5.0**2 * J / (2 * BRAKE)
-    ((t, mode),) = run.events
-    assert mode == 0
-    within(abs(t - instant), 64 * EPSILON, "instant at which it stops, s")  # logged to the nanosecond
-    within(abs(run["X_O"][-1] - distance), 64 * EPSILON, "way, m")
-    assert (run["omega_z"][1:] == 0).all()  # held without creep
-    within(abs(run["tau"][0] - BRAKE), 64 * BRAKE * EPSILON, "moment of the brake, N m")  # against omega_z < 0
-    ((late, _),) = braked(library, [0.0, 2.0], {"M_brake": (BRAKE,)}, s=1e-6).events  # the partner: a trace of s N
-    beyond(abs(late - instant), 8e-7, "instant with a trace of friction, s")
 
 
 def test_it_lets_go_where_a_growing_force_exceeds_it(library: Library) -> None:

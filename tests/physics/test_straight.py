@@ -69,19 +69,23 @@ def move(library: Library, formulation: int, way: Way):
 # ---- it grips ----
 
 
-def test_friction_and_brake_together_stop_it_and_hold_it(move, way: Way) -> None:
-    s, brake, spin = 0.02, 10.0, -8.0
+@pytest.mark.parametrize("s", [0.0, 0.02], ids=["brake", "brake and friction"])
+def test_brake_and_friction_stop_it_at_their_instant_and_hold_it(move, way: Way, s: float) -> None:
+    brake, spin = 10.0, -8.0
     slowing = (s * M * G + brake) / way.inertia
     stop, distance = -spin / slowing, way.R * spin**2 / (2 * slowing)
 
     def error(judged: float) -> float:
         start = {"phi_dot_start": spin, "s": s * judged}
-        run = move([0.0, stop / 2, stop + way.rest / 2, stop + way.rest], {"M_brake": brake}, **start)
+        run = move([0.0, stop / 2, stop + way.rest / 2, stop + way.rest], {"M_brake": brake * judged}, **start)
         assert not run["omega_z"][2:].any()
+        ((instant, mode),) = run.events
+        assert mode == 0 and (abs(instant - stop) < 1e-9) == (judged == 1)  # logged to the nanosecond
+        within(absolute_error(run["tau"][:2], judged * (s * M * G + brake)), 64 * brake * EPSILON, "moment, N m")
         return absolute_error([*run["omega_z"][1:2], *run["X_O"][2:]], [spin / 2, distance, distance])
 
     within(error(1.0), 256 * EPSILON, "spin half-way, rad/s, and way, m")
-    beyond(error(1.0001), 1e-5, "spin and way with 0.01 % more friction")
+    beyond(error(1.0001), 1e-5, "spin and way with 0.01 % more of both")
 
 
 @pytest.mark.parametrize("s", [0.0, 0.03], ids=["free", "friction"])
