@@ -1,15 +1,12 @@
 """The second component where the first is tested, and the reverse. What is true along X is so along Y, by a quarter
-turn of the scene: motions, rates, derivatives, model exchange. Each input alone, in each of its derivatives, does the
-work of its power.
+turn of the scene: motions, rates, derivatives, model exchange.
 """
 
-from itertools import pairwise
 from math import pi
 
 import numpy as np
 import pytest
 from support.bounds import beyond, within
-from support.differences import LOADS
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES, Array, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
@@ -137,37 +134,3 @@ def test_in_model_exchange_too(library: Library, scene: str) -> None:
             around.put(**{name: value + 0.01})
             assert around.x()[states.index(name)] == value + 0.01
             assert np.count_nonzero(around.x() - np.array(around.get(*states))) == 0
-
-
-# ---- each input alone ----
-
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
-SPEEDS = ("X_O_dot", "Y_O_dot", "Z_O_dot", "theta_dot", "psi_dot", "omega_z", "theta")
-CUBIC = (0.8, -2.0, 3.0, -1.5)
-
-
-def power(w: FMU2Wheel, load: str, value: float) -> float:
-    X, Y, Z, tilt, turn, spin, theta = w.get(*SPEEDS)
-    return value * (X, Y, Z, tilt, turn * np.sin(theta), spin)[LOADS.index(load)]
-
-
-@pytest.mark.parametrize("formulation", [2, 3])
-@pytest.mark.parametrize("order", range(4))
-@pytest.mark.parametrize("load", LOADS)
-def test_each_input_alone_in_each_of_its_derivatives_does_the_work_of_its_power(wheel, load, order, formulation):
-    """A leaning wheel that rolls without friction, J_x != J_y."""
-    w = wheel().start(tolerance=1e-11, **ODD, slope=0.1, formulation=formulation)
-    first, work, moved = w.get("E")[0], 0.0, 0.0
-    shape = [0.0] * 4
-    shape[order] = (20 if load.startswith("F") else 5) * CUBIC[order]
-    for begin, end in pairwise(np.linspace(0, 0.5, 9)):
-        for node, weight in zip(NODES, WEIGHTS, strict=True):
-            t = begin + 0.5 * (1 + node) * (end - begin)
-            w.give({load: tuple(shape)}, w.time).to(t)
-            part = 0.5 * (end - begin) * weight * power(w, load, shape[order] * t**order)
-            work, moved = work + part, moved + abs(part)
-        w.give({load: tuple(shape)}, w.time).to(float(end))
-    within(abs(w.get("E")[0] - first - work), 1e-8, "energy off the work, J")
-    kept = w.get(load)
-    assert w.by(0.02).get(load) == w.by(0.02).get(load) == kept  # a derivative holds for one step
-    beyond(moved, 1e-3, "work, J")
