@@ -61,8 +61,11 @@ double wheel_brake_moment(const WheelAxleMoment* now) {
 
 double wheel_brake_moment_rate(const WheelAxleMoment* now, const WheelAxleMoment* rate) {
   double capacity, part = brake_part(now, &capacity);
-  if (!(capacity > 0)) return rate->tau;
   double rolling_rate = now->N > 0 ? rate->s * now->N + now->s * rate->N : 0;
+  if (!(capacity > 0)) { /* of what comes to act, the brake's share */
+    double capacity_rate = rate->brake + rolling_rate;
+    return capacity_rate != 0 ? rate->tau * rate->brake / capacity_rate : 0;
+  }
   double part_rate = (rate->brake * (1 - part) - part * rolling_rate) / capacity;
   return rate->tau * part + now->tau * part_rate;
 }

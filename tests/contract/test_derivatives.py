@@ -232,8 +232,6 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
         if known in AXLE[scene != "steered"]:
             assert exact == 0  # of the free wheel and of the carrier
             continue
-        if (unknown, known) == ("tau_brake", "s") and w.get("s", "M_brake") == [0, 0]:
-            continue  # the next test
         h = 1e-5 * (abs(w.get(known)[0]) or 1.0) * (-1 if known == "J_z" else 1)  # J_z may be at its limit
         (quotient,), size = difference(w, [unknown], known, h, range(3)), 1 + abs(exact)
         within({f"d {unknown} / d {known}": abs(exact - quotient) / size}, 2e-5, "off the difference, relative")
@@ -244,12 +242,12 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
     assert w.messages == []
 
 
-@pytest.mark.xfail(strict=True, reason="where nothing resists, the rate of tau_brake is that of tau, also by s")
 def test_rolling_resistance_alone_is_no_moment_of_the_brake(wheel):
     """tau_brake = tau M_brake / (M_brake + s N) is zero for each s where M_brake is."""
     w = wheel().initializing()
-    assert w.put(s=1e-6).get("tau_brake") == w.put(s=0.0).get("tau_brake") == [0]
-    assert w.jacobian(["tau_brake"], ["s"])[0, 0] == 0
+    slopes = w.jacobian(["tau_brake", "tau"], ["s", "M_brake"])
+    assert slopes[0, 0] == 0 and slopes[0, 1] == slopes[1, 1] != 0
+    beyond(abs(slopes[1, 0]), 100, "derivative of tau by s, N")
 
 
 @pytest.mark.parametrize("omega_s", [1.0, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9])
