@@ -4,7 +4,6 @@ Cuts that a master makes by itself: at random, at sums of decimal steps, and in 
 wheel leans: an upright one cannot see what these inputs do wrong.
 """
 
-from functools import cache
 from itertools import accumulate, pairwise
 from math import nextafter
 
@@ -21,7 +20,6 @@ from wheelfmu.truth.schedule import Piece
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 RUNGE_KUTTA: Values = {"formulation": 2, "method": 4}
 LEANING: Values = {"theta_start": 1.2, "psi_dot_start": 0.5, "phi_dot_start": -6.0, "s": 0.03}
-THROWN: Values = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 1.0, "slip_y_start": -0.5}  # grips after 0.79 s
 STOP = 2.0
 VARIED: list[Piece] = [
     (0.0, {"M_3": (0.0, 0.5), "F_Y": (1.0, -2.0, 3.0, -0.5), "F_Z": (0.0, 0.0, 8.0)}),
@@ -29,11 +27,6 @@ VARIED: list[Piece] = [
     (1.3, {"M_3": (0.0, 1.5, -1.0), "F_Y": (0.0,), "F_Z": (0.0,)}),
 ]
 HELD: list[Piece] = [(0.0, {"M_3": (0.5,), "F_Z": (3.0,)}), (0.5, {"M_3": (-0.5,), "F_Z": (0.0,)})]
-SCENES: dict[str, tuple[list[Piece], Values]] = {
-    "varied": (VARIED, {}),
-    "held": (HELD, {}),
-    "varied, slides": (VARIED, THROWN),
-}
 GAPS = (1e-3, 1e-6, 1e-9, 1e-12, 1e-13, 0.0)  # s, 0: to the next number
 BOUND = 1  # tolerance of the range of each state over the run
 RESTART = 0.1  # the same, what a restart may add: a cut restarts CVODE where an input varies
@@ -42,29 +35,25 @@ random_cuts = st.lists(st.tuples(st.floats(1e-3, STOP - 1e-3), st.sampled_from(G
 
 
 @pytest.fixture
-def defect(played, kind):
-    """defect(scene, cuts): the largest difference that the cuts make, in tolerances of each state's range."""
+def defect(played):
+    """defect(kind, pieces, cuts): the largest difference that the cuts make, in tolerances of each state's range."""
 
-    def motion(scene, pieces, stop=STOP, cuts=(), **choices):
+    def motion(pieces, stop=STOP, cuts=(), **choices):
         begun = [piece for piece in pieces if piece[0] < stop]
-        return np.array(played(begun, stop, cuts, STATES, **LEANING, **SCENES[scene][1], **choices))
+        return np.array(played(begun, stop, cuts, STATES, **LEANING, **choices))
 
-    @cache
-    def ranges(scene):
-        return np.ptp([motion(scene, SCENES[scene][0], STOP * k / 20, tolerance=1e-7) for k in range(1, 21)], axis=0)
-
-    def find(scene, cuts, given_pieces=None, tolerance=1e-7):
-        pieces = SCENES[scene][0]
-        whole = motion(scene, pieces, tolerance=tolerance, **kind)
-        cut = motion(scene, given_pieces or pieces, cuts=cuts, tolerance=tolerance, **kind)
-        return float(np.max(np.abs(cut - whole) / ranges(scene)) / tolerance)
+    def find(kind, pieces, cuts, given_pieces=None, tolerance=1e-7):
+        whole = motion(pieces, tolerance=tolerance, **kind)
+        cut = motion(given_pieces or pieces, cuts=cuts, tolerance=tolerance, **kind)
+        ranges = np.ptp([motion(pieces, STOP * k / 20, tolerance=1e-7) for k in range(1, 21)], axis=0)
+        return float(np.max(np.abs(cut - whole) / ranges) / tolerance)
 
     return find
 
 
-def bound_of(kind, scene, cuts):
+def bound_of(kind, pieces, cuts):
     """Of the difference that the cuts may make."""
-    restarts = kind["method"] in (2, 3) and SCENES[scene][0] is VARIED
+    restarts = kind["method"] in (2, 3) and pieces is VARIED
     return BOUND + RESTART * len(cuts) * restarts
 
 
@@ -73,16 +62,16 @@ def with_gaps(drawn):
     return sorted({t for cut, gap in drawn for t in (cut, cut + gap if gap else nextafter(cut, 9.0))})
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_random_cuts_change_nothing(defect, kind, scene):
+@pytest.mark.parametrize("pieces", [VARIED, HELD], ids=["varied", "held"])
+def test_random_cuts_change_nothing(defect, kind, pieces):
     worst = []
 
     @settings(max_examples=8)
     @given(random_cuts)
     def check(drawn):
         cuts = with_gaps(drawn)
-        worst.append(defect(scene, cuts))
-        within(worst[-1], bound_of(kind, scene, cuts), "difference by the cuts, tolerances of the range")
+        worst.append(defect(kind, pieces, cuts))
+        within(worst[-1], bound_of(kind, pieces, cuts), "difference by the cuts, tolerances of the range")
 
     check()
     assert len(worst) > 4
@@ -93,23 +82,22 @@ def test_cuts_that_rounding_makes_change_nothing(defect, kind):
     sums = list(accumulate([1e-3] * 1999))
     tenths = [*(0.1 * k for k in range(1, 20)), *accumulate([0.1] * 19)]
     for cuts, share, name in ((sums, 1, "sums of steps"), (tenths, 0.2, "tenths and their sums")):
-        bound = share * bound_of(kind, "varied", cuts)
-        within(defect("varied", cuts), bound, f"difference by {name}, tolerances of the range")
+        bound = share * bound_of(kind, VARIED, cuts)
+        within(defect(kind, VARIED, cuts), bound, f"difference by {name}, tolerances of the range")
 
 
 @pytest.mark.parametrize("gap", GAPS)
 def test_a_step_that_is_next_to_nothing_changes_nothing(defect, kind, gap):
     for tolerance in (1e-9, 1e-6, 1e-4):
         cuts = with_gaps([(1.0, gap)])
-        found = defect("varied", cuts, tolerance=tolerance)
-        within(found, bound_of(kind, "varied", cuts), "change by the step, tolerances of the range")
+        found = defect(kind, VARIED, cuts, tolerance=tolerance)
+        within(found, bound_of(kind, VARIED, cuts), "change by the step, tolerances of the range")
 
 
-@pytest.mark.parametrize("scene", ["varied", "varied, slides"])
-def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(defect, scene):
+def test_the_bound_sees_an_input_that_is_wrong_for_a_tenth_of_a_second(defect, kind):
     """The partner: a thousandth of one input is too much in a small part of the run."""
     wrong = [*VARIED[:2], (1.2, {"M_3": (-0.099 * 1.001,), "F_Y": (3.0,), "F_Z": (-0.8,)}), VARIED[2]]
-    beyond(defect(scene, [1.25], wrong), 1000, "difference by a wrong input, tolerances of the range")
+    beyond(defect(kind, VARIED, [1.25], wrong), 1000, "difference by a wrong input, tolerances of the range")
 
 
 OFF = 1e-6  # of three start values, to see how errors grow
