@@ -95,6 +95,11 @@ def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(
         within(error(nearer) / max(0.45 * error(finding), rest), 1, "error of stiff links over what 1/k allows")
 
 
+def test_the_stopping_distance_is_that_of_the_closed_form(fmus: Fmus) -> None:
+    for finding in car_judges.braking(drive(fmus, STRAIGHT, 0.001), STRAIGHT, constants(STRAIGHT)):
+        within(error(finding), 0.05 if finding.what.startswith("load") else 0.02, f"{finding.what}, relative")
+
+
 def test_on_a_split_road_the_car_keeps_its_course_at_the_closed_forms_deceleration_and_moment(fmus: Fmus) -> None:
     table = drive(fmus, SPLIT, 0.001)
     assert {*car_judges.slid(table)} == {"fr", "rr"} and car.verdict(table, SPLIT)[0]
