@@ -15,7 +15,7 @@ ref = {v.name: v.valueReference for v in description.modelVariables}
 READ = [ref[n] for n in ("X_O", "Y_O", "X_O_dot", "Y_O_dot", "psi", "M_guide_2", "lambda_y")]
 SET = [ref[n] for n in ("F_X", "F_Y", "F_Z", "psi_dot_guide")]
 HUBS = np.array([[1.2, 0.75], [1.2, -0.75], [-1.4, 0.75], [-1.4, -0.75]])  # of the body: forward, left
-m_B, J_B, m, L, R, k, c, h, v = 1200.0, 1900.0, 20.0, 2.6, 0.35, 3e5, 4e3, 0.004, 12.0
+m_B, J_B, J_x, m, L, R, k, c, h, v = 1200.0, 1900.0, 0.9, 20.0, 2.6, 0.35, 3e5, 4e3, 0.004, 12.0
 
 
 def steer(hub, t):
@@ -49,7 +49,7 @@ for n in range(1000):
         wheel.setReal(SET, [*force, -m_B * 9.81 / 4, turn])
         wheel.doStep(t, h)
     a = -F.sum(0) / m_B
-    alpha = (np.sum(arms[:, 1] * F[:, 0] - arms[:, 0] * F[:, 1]) - M_guide.sum()) / J_B
+    alpha = (np.sum(arms[:, 1] * F[:, 0] - arms[:, 0] * F[:, 1]) - M_guide.sum()) / (J_B + 4 * J_x)  # held rates
     place, velocity = place + h * velocity + h**2 / 2 * a, velocity + h * a
     psi, omega = psi + h * omega + h**2 / 2 * alpha, omega + h * alpha
     path.append([t, *place, psi, omega, *lambda_y, *X, *Y])

@@ -161,6 +161,23 @@ def test_in_a_steady_turn_the_road_gives_m_v_psi_dot_and_the_carrier_turns_the_a
     beyond(error(1.001), 1e-2, "the same with 0.1 % more")
 
 
+def test_a_side_force_at_the_centre_of_a_turning_wheel_loads_road_and_carrier(
+    library: Library, formulation: int
+) -> None:
+    """As of a vehicle's wheel, whose link pushes it into the turn: the road bears the vehicle, the carrier its arm."""
+    turn, push = 0.5, -800.0  # rad/s, N to the left
+
+    def error(arm: float) -> float:
+        with library.wheel() as w:
+            w.start(**ROLLS, formulation=formulation, psi_dot_guide=turn, F_Y=push)
+            road = M * V * turn - push
+            want = np.array([road, -J_Z * V / R * turn - arm * road])
+            return absolute_error(np.array(w.get("lambda_y", "M_guide_1")), want)
+
+    within(error(R), 64 * 1000 * EPSILON, "side force of the road, N, and moment of the carrier, N m")
+    beyond(error(R_0), 10.0, "the same with the arm to the ring")
+
+
 def test_on_a_cambered_circle_forces_and_moment_are_those_of_a_rigid_body_that_turns_about_the_vertical(
     library: Library, formulation: int
 ) -> None:
