@@ -19,7 +19,7 @@ study = Study(
     grid={
         "s": [0.0, 0.03],  # m; the paper's two scenes
         "theta_start": np.radians(90 * (np.arange(ANGLES) + 0.5) / ANGLES),
-        "phi_dot_start": -np.r_[0.0, np.geomspace(0.05, 50.0, SPINS - 1)],  # rad/s, rolling towards +e1
+        "phi_dot_start": -np.r_[0.0, np.geomspace(0.05, 50.0, SPINS - 1)],  # rad/s, rolling towards e1
     },
     values={"keep_contact": 1.0},  # the normal force goes on smoothly through zero
     measures={"lowest": "lowest", "N": "min(lambda_3)"},

@@ -19,7 +19,7 @@ study = Study(
     grid={
         "s": [0.0, 0.03],  # m; the paper's two scenes
         "theta_start": np.radians(90 * (np.arange(SIDE) + 0.5) / SIDE),
-        "phi_dot_start": -12 * (np.arange(SIDE) + 0.5) / SIDE,  # rad/s, rolling towards +e1
+        "phi_dot_start": -12 * (np.arange(SIDE) + 0.5) / SIDE,  # rad/s, rolling towards e1
     },
     values={"keep_contact": 1.0},  # the normal force goes on smoothly through zero
     measures={"mu": "max(mu_required)", "N": "min(lambda_3)"},
