@@ -214,6 +214,7 @@ REFUSED = {
     "formulation\n1\n2.7\n": "line 3, column 1: formulation = 2.7 is not one of",
     "theta_start,theta_start\n1.2,1.3\n": "theta_start is given twice, as column 1 and as column 2",
     "theta_start;phi_dot_start\n1,2;-2\n": "semicolons separate its columns",
+    '"theta_start";"phi_dot_start"\n"1.2";"-2"\n': "semicolons separate its columns",
     "theta_start\tphi_dot_start\n1.2\t-2\n": "tabs separate its columns",
     ",theta_start\n0,1.2\n": "column 1 has no name",
     "theta_start,s\n1.2\n": "line 2: 1 values for the 2 names",

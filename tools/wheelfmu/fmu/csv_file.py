@@ -52,15 +52,16 @@ def read_table(path: Path) -> Table:
         raise Fault(f"{path} cannot be read: {fault.strerror}.") from None
     except UnicodeDecodeError:
         raise Fault(f"{path} cannot be read: it is not UTF-8 text.") from None
+    first = next((line for line in text.splitlines() if line.strip()), "")  # names have neither mark, quoted or not
+    for mark, word in {";": "semicolons", "\t": "tabs"}.items():
+        if mark in first.strip():
+            raise Fault(f"{path}: {word} separate its columns; write commas, and points as decimal marks.")
     reader = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
     try:
         rows = [(reader.line_num, cells) for row in reader if any(cells := [cell.strip() for cell in row])]
     except csv.Error as fault:
         raise Fault(f"{path}, line {reader.line_num}: {fault}.") from None
     header, rows = (rows[0][1] if rows else []), rows[1:]
-    for mark, word in {";": "semicolons", "\t": "tabs"}.items():
-        if any(mark in name for name in header):
-            raise Fault(f"{path}: {word} separate its columns; write commas, and points as decimal marks.")
     width = max((k for k, name in enumerate(header, 1) if name), default=0)
     if nameless := [k for k, name in enumerate(header[:width], 1) if not name]:
         raise Fault(f"{path}: column {nameless[0]} has no name in the first row.")
