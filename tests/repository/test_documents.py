@@ -15,11 +15,12 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from support.checkout import copy_checkout
 
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
-from wheelfmu.publishing import variables
+from wheelfmu.publishing import markdown, variables
 from wheelfmu.publishing.markdown import pages, with_figures
 
 TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages()}
@@ -34,6 +35,16 @@ def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:
 def test_tables_of_variables_reports_and_figures_in_prose_are_those_of_the_data(words: tuple[str, ...]) -> None:
     done = run(sys.executable, "-m", *words, "--check")
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_zip_without_git_has_the_same_documents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    known = {page.relative_to(ROOT) for page in pages()}
+    copy_checkout(tmp_path)
+    for name in ("build/site/index.html", "results/wheel.html", ".venv/notes.md", "new.md"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    monkeypatch.setattr(markdown, "ROOT", tmp_path)
+    assert {page.relative_to(tmp_path) for page in pages()} == {*known, Path("new.md")}
 
 
 def test_another_variable_would_be_noticed() -> None:
@@ -162,6 +173,7 @@ def test_every_command_explains_itself_and_rejects_a_typing_error_before_anythin
     before = {*checkout.rglob("*")}
     shown = run(str(checkout / "scripts" / name), "--help")
     assert shown.returncode == 0 and not shown.stderr and len(shown.stdout.split()) >= 10
+    assert name == "help" or f"./scripts/{name}" in shown.stdout  # as it is typed
     if name in WRONG:
         done = run(str(checkout / "scripts" / name), *WRONG[name].split())
         assert done.returncode in (1, 2) and not done.stdout and done.stderr.strip()

@@ -28,7 +28,11 @@ def said(*command: str) -> str:
 
 
 def pages() -> list[Path]:
-    """Every document under version control, and new ones."""
+    """Every document under version control, and new ones; without git, as in a ZIP, all outside ignored folders."""
+    if not (ROOT / ".git").exists():
+        ignored = {line.strip("/") for line in (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()}
+        found = (page for kind in ("*.md", "*.html") for page in ROOT.rglob(kind))
+        return sorted(page for page in found if page.relative_to(ROOT).parts[0] not in ignored)
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md", "*.html"]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return [ROOT / name for name in sorted(listed.stdout.split("\0")) if name and (ROOT / name).is_file()]
