@@ -141,6 +141,21 @@ def test_a_phone_shows_everything_without_scrolling_sideways_and_as_high_as_a_fi
         page.wait_for_function("page.player.t > 0.05")
 
 
+CUT_OFF = """() => [...document.querySelectorAll('[popover]')].map((card) => {
+  card.showPopover();
+  const cut = card.scrollWidth - card.clientWidth;
+  card.hidePopover();
+  return cut;
+})"""
+
+
+def test_on_a_phone_a_card_cuts_nothing_off_with_two_motions(phone, live_file):
+    with opened(phone, live_file, "step=4") as page:
+        assert page.evaluate(CUT_OFF) == [0, 0, 0]  # px
+        page.add_style_tag(content="#values table { font-size: 14px }")
+        assert max(page.evaluate(CUT_OFF)) > 10
+
+
 def test_on_a_phone_on_its_side_scene_clock_and_story_are_in_sight_together(browser, live_file):
     size = {"width": 844, "height": 390}
     with opened(window_of(browser, viewport=size, has_touch=True, is_mobile=True), live_file, "step=4") as page:
