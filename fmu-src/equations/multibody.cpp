@@ -70,7 +70,7 @@ Matrix63 B_tilde(const Multibody& s, double kappa) {
   return B_tilde;
 }
 
-// (15), generalised: weight (tilted on a slope), F at O (fixed axes), M turned from the non-spinning frame into body
+// (15), generalized: weight (tilted on a slope), F at O (fixed axes), M turned from the non-spinning frame into body
 // axes by [phi]^T.
 Vector6 F(const Multibody& s, const WheelLoad& load) {
   const Matrix3 phi = rotation_z(s.attitude.sin_phi, s.attitude.cos_phi);

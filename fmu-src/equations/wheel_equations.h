@@ -1,6 +1,6 @@
 /* The wheel's equations behind one C header: "Dynamics of an automobile wheel" (Stanescu & Mihalcea).
  *
- * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling friction, or slides on it under
+ * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling resistance, or slides on it under
  * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
@@ -11,7 +11,7 @@
  *
  * Frames (docs/variables.md): fixed axes X, Y, Z with Z up; z-x-z Euler angles psi, theta, phi; the non-spinning frame
  * e1 (along the line of nodes, the rolling direction), e2 (in the wheel plane, upwards), e3 (the axle); body axes x, y,
- * z = e3 spin with the wheel. Domain: 0 < theta < pi, masses, radii and moments positive. */
+ * z = e3 spin with the wheel. Domain: 0 < theta < pi; mass, r_0 and moments positive, r >= 0. */
 #ifndef WHEEL_EQUATIONS_H
 #define WHEEL_EQUATIONS_H
 
@@ -172,7 +172,7 @@ extern const WheelFormulation wheel_reduced;
 extern const WheelFormulation wheel_euler;
 
 /* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
- * whose spin is held keeps it at exactly zero. The constraints are stabilised: what rounding and step errors leave of
+ * whose spin is held keeps it at exactly zero. The constraints are stabilized: what rounding and step errors leave of
  * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
 extern const WheelFormulation wheel_multibody;
 
@@ -209,7 +209,7 @@ typedef struct WheelAxleMoment {
   double brake; /* N m, capacity of the brake */
 } WheelAxleMoment;
 
-/* The brake's part of tau, N m: brake and rolling friction share it in proportion to their capacities, brake and s N.
+/* The brake's part of tau, N m: brake and rolling resistance share it in proportion to their capacities, brake and s N.
  * So it is -brake kappa while the wheel rolls, and has no corner where the wheel is released or held. */
 double wheel_brake_moment(const WheelAxleMoment* now);
 

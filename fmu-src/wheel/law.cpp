@@ -1,4 +1,4 @@
-// The laws of the contact: rolling friction, the start and the end of a slide.
+// The laws of the contact: rolling resistance, the start and the end of a slide.
 //
 // decide_contact: does the wheel grip? If so, decide_law: the law of friction; a stiff one by enter_layer. If not,
 // begin_slide: the direction of the slip and the law, each of which depends on the other.
@@ -178,8 +178,7 @@ double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
   return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia);
 }
 
-// To be compared with the time scale; below the limit DOP853 alone is faster through the layer
-// (docs/results/stability.md).
+// To be compared with the time scale; below the limit DOP853 alone is faster through the layer.
 double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
   constexpr double stiff = 500;
   return 1 - decay_of(setup, scene, y) * setup.time_scale / stiff;

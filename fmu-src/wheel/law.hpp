@@ -1,4 +1,4 @@
-// What acts on the wheel from an instant on: road and inputs, the law of rolling friction after Filippov, and whether
+// What acts on the wheel from an instant on: road and inputs, the law of rolling resistance after Filippov, and whether
 // the wheel rolls or slides after Coulomb. Pure functions of setup, load and state.
 #pragma once
 

@@ -12,8 +12,8 @@
 
 namespace wheel {
 
-// Relative tolerance of the whole solution: over ten seconds of the paper's scenes the relative error of the energy
-// stays below it (docs/results/accuracy.md).
+// Relative tolerance of the whole solution: over ten seconds of the paper's free wheel the relative error of the
+// energy stays below it (docs/results/accuracy.md).
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
 // Who integrates the motion.
