@@ -27,11 +27,13 @@ enum { output_count = sizeof outputs / sizeof *outputs };
 
 static const fmi2ValueReference choices[] = {ref_formulation, ref_friction_law, ref_method},
                                 reals[] = {ref_s, ref_J_y, ref_r, ref_psi_dot_start, ref_M_3, ref_mu_max, ref_mu_slide},
-                                contact = ref_keep_contact, force = ref_F_X;
+                                switches[] = {ref_keep_contact, ref_guided}, force = ref_F_X,
+                                heading_rate = ref_psi_dot_guide;
 static const struct scene {
   const char* name;
   int choices[3];
-  double reals[7], slope, tolerance; /* slope: of F_X in time, N/s */
+  double reals[7], slope, tolerance; /* slope in time: of F_X, N/s; of a guided wheel of psi_dot_guide, rad/s2 */
+  int guided;
 } scenes[] = {
     {"free", {1, 1, 1}, {0, 0.9, 0.05, 0, 0}, 0, 1e-8},
     {"friction", {1, 1, 1}, {0.03, 0.9, 0.05, 0, 0}, 0, 1e-8},
@@ -45,6 +47,8 @@ static const struct scene {
     {"tight tolerance", {1, 1, 1}, {0, 0.9, 0.05, 0.5, 0}, 0, 1e-12},
     {"sliding", {1, 1, 1}, {0, 0.9, 0.05, 0, 0, 0.45, 0.4}, 0, 1e-8},
     {"sliding, stiff law", {1, 2, 1}, {0.3, 0.9, 0.05, 0, 0, 0.45, 0.4}, 0, 1e-8},
+    {"steered", {1, 1, 1}, {0.01, 1.1, 0.05, 0, -2}, 0.05, 1e-8, 1},
+    {"steered, sliding", {3, 1, 1}, {0.01, 0.9, 0.05, 0, -15, 0.3, 0.25}, 0.05, 1e-8, 1},
 };
 
 /* Steps of one instance; `table` has for each step the values of the inputs, then their derivatives of order 1 to
@@ -121,11 +125,11 @@ static fmi2Component start(const struct scene* scene, const char* guid) {
   static const fmi2CallbackFunctions functions = {quiet, calloc, free, NULL, NULL};
   const fmi2Component c = fmu.Instantiate("wheel", fmi2CoSimulation, guid, "", &functions, 0, 0);
   if (!c) exit(1);
-  const fmi2Boolean kept = fmi2True;
+  const fmi2Boolean switched[] = {fmi2True, scene->guided};
   const fmi2Status statuses[] = {fmu.SetupExperiment(c, 1, scene->tolerance, 0, 0, 0),
                                  fmu.SetReal(c, reals, sizeof reals / sizeof *reals, scene->reals),
                                  fmu.SetInteger(c, choices, sizeof choices / sizeof *choices, scene->choices),
-                                 fmu.SetBoolean(c, &contact, 1, &kept),
+                                 fmu.SetBoolean(c, switches, 2, switched),
                                  fmu.EnterInitializationMode(c),
                                  fmu.ExitInitializationMode(c)};
   for (size_t i = 0; i < sizeof statuses / sizeof *statuses; ++i)
@@ -145,7 +149,8 @@ static void print_hash(const struct scene* scene, const char* guid) {
   enum { steps = 500 };
   static double pushes[2 * steps], rows[steps * output_count];
   for (int i = 0; i < steps; ++i) pushes[2 * i] = scene->slope * 0.02 * i, pushes[2 * i + 1] = scene->slope;
-  const Run run = {&force, outputs, scene->slope != 0, output_count, 1, pushes, 0.02, steps};
+  const fmi2ValueReference* input = scene->guided ? &heading_rate : &force;
+  const Run run = {input, outputs, scene->slope != 0, output_count, 1, pushes, 0.02, steps};
   const fmi2Component c = start(scene, guid);
   if (march(c, &run, rows, NULL).steps < steps) exit(1);
   uint64_t hash = 0xcbf29ce484222325u;
