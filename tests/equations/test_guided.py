@@ -1,6 +1,6 @@
 """The equations on a wheel carrier against the paper's system (24) with the carrier's two moments as unknowns.
 
-Random wheels whose axle turns as it is told, under loads and each law; frames of wheel_equations.h.
+Random wheels whose axle turns as prescribed, under loads and each law; frames of wheel_equations.h.
 """
 
 from ctypes import byref

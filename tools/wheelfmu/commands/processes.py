@@ -109,14 +109,14 @@ def end_all() -> None:
     signal.setitimer(signal.ITIMER_REAL, 0)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
-    begin, told = time.monotonic(), set()
+    begin, signalled = time.monotonic(), set()
     while left := descendants():
         killed = time.monotonic() - begin > PATIENCE
         for pid in left:
             with suppress(ProcessLookupError):
-                if killed or pid not in told:
+                if killed or pid not in signalled:
                     os.kill(pid, signal.SIGKILL if killed else signal.SIGTERM)
-        told |= {*left}
+        signalled |= {*left}
         with suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass

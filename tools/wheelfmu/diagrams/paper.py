@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces, and more where it tells.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces, and more where it helps.
 
     python -m wheelfmu.diagrams.paper FOLDER [argument of ./scripts/run]...
 
@@ -44,14 +44,14 @@ FALL_BY_ROUNDING = "Rounding decides when and to which side an upright wheel tip
 
 @dataclass(frozen=True)
 class Panel:
-    """One row of a sheet; height in mm in all; `draw` returns what the caption explains; `tells`: whether a scene has
+    """One row of a sheet; height in mm in all; `draw` returns what the caption explains; `applies`: whether a scene has
     content for it; `figures`: its numbers in the paper, without and with friction."""
 
     name: str
     subject: str
     height: float
     draw: Callable[[Axes, Scene], list[str]]
-    tells: Callable[[Scene], bool]
+    applies: Callable[[Scene], bool]
     figures: tuple[int, int] | None = None
 
 
@@ -92,7 +92,7 @@ def slides_along(scene: Scene) -> bool:
 
 
 def runs_apart(scene: Scene) -> bool:
-    """Whether speed and spin tell: it slows down straight ahead, or slides along."""
+    """Whether speed and spin show the motion: it slows down straight ahead, or slides along."""
     return not steered(scene) and (slows(scene) or slides_along(scene))
 
 
@@ -342,8 +342,8 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
 
 def panels_of(scenes: Sequence[Scene]) -> tuple[Panel, ...]:
     """Of runs that are not the paper's: those with content in one of the scenes."""
-    told = tuple(panel for panel in PAPERS + OTHERS + DRIVEN if any(panel.tells(scene.moving) for scene in scenes))
-    return told or DRIVEN[-1:]
+    found = tuple(panel for panel in PAPERS + OTHERS + DRIVEN if any(panel.applies(scene.moving) for scene in scenes))
+    return found or DRIVEN[-1:]
 
 
 def alike(one: Scene, other: Scene) -> bool:
