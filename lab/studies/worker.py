@@ -234,7 +234,8 @@ def pack(fmu: str | Path, path: Path) -> Path:
     shutil.copy(fmu, path)
     with zipfile.ZipFile(path, "a") as package:
         package.write(library, MARCH)
-        package.writestr("wheelfmu/__init__.py", JOINED)
-        for source in [*here.glob("*.py"), *here.with_name("fmu").glob("*.py")]:
-            package.write(source, f"wheelfmu/{source.parent.name}/{source.name}")
+        for name, folder in {"lab/studies": here, "wheelfmu/fmu": Path(values.__file__).parent}.items():
+            package.writestr(f"{name.partition('/')[0]}/__init__.py", JOINED)
+            for source in folder.glob("*.py"):
+                package.write(source, f"{name}/{source.name}")
     return path
