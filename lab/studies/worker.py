@@ -26,6 +26,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2FMUstate
 from numpy.typing import NDArray
 
+from wheelfmu.fmu import values
 from wheelfmu.fmu.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
 from wheelfmu.fmu.values import Fault
 
