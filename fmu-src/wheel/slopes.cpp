@@ -82,7 +82,7 @@ struct Pass {
     return true;
   }
 
-  // (scale: of the variable) => exact; whether all are
+  // Marks the derivatives that are exact; true if all are. scale: of the variable.
   bool settle(double scale) {
     constexpr double relative = 1e-11;
     for (std::size_t i = 0; i < count; ++i)
