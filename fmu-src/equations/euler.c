@@ -1,5 +1,5 @@
-/* The states of model exchange, x: the paper's variables, Euler angles and their rates, beside the state y of the reduced
- * form. Fixed axes, SI. x is stored and y follows from it: a state that was set is read back to the bit. */
+/* The states of model exchange, x: the paper's variables, Euler angles and their rates, beside the state y of the
+ * reduced form. Fixed axes, SI. x is stored and y follows from it: a state that was set is read back to the bit. */
 #include <math.h>
 
 #include "wheel_equations.h"

@@ -1,5 +1,6 @@
 // The multibody formulation behind the C header: the paper's system of equations of motion, (15)-(24), any inertia,
-// under a law of friction, solved at a state of the reduced forms. Fixed axes for O, Euler angles for the attitude. Eigen.
+// under a law of friction, solved at a state of the reduced forms. Fixed axes for O, Euler angles for the attitude.
+// Eigen.
 //
 // Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
 // -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
@@ -175,8 +176,8 @@ double spin_rate(const Instant& now, const Solution& solution) {
   return now.scene.friction.kind == WHEEL_HELD ? 0 : omega_z_dot(now.s, solution.unknowns);
 }
 
-// The rate of omega_2 = psi_dot sin(theta); that of the slip is the rate of [B]{q_dot}, whose axes turn with psi. Returns
-// N, infinite where the wheel jams.
+// The rate of omega_2 = psi_dot sin(theta); that of the slip is the rate of [B]{q_dot}, whose axes turn with psi.
+// Returns N, infinite where the wheel jams.
 template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   const Instant now = instant_of(*scene, y, slides);
@@ -208,8 +209,11 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
 template <bool slides>
 void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
   const Multibody s(*wheel, y, slides);
-  *out = {y[WHEEL_X_O], y[WHEEL_Y_O], wheel_height(wheel, y[WHEEL_THETA]), y[WHEEL_PSI], y[WHEEL_THETA], y[WHEEL_PHI],
-          s.q_dot[X_O], s.q_dot[Y_O], s.q_dot[Z_O], s.q_dot[psi], s.q_dot[theta], s.q_dot[phi], s.omega_z};
+  *out = {y[WHEEL_X_O], y[WHEEL_Y_O],   wheel_height(wheel, y[WHEEL_THETA]),
+          y[WHEEL_PSI], y[WHEEL_THETA], y[WHEEL_PHI],
+          s.q_dot[X_O], s.q_dot[Y_O],   s.q_dot[Z_O],
+          s.q_dot[psi], s.q_dot[theta], s.q_dot[phi],
+          s.omega_z};
 }
 
 template <bool slides>

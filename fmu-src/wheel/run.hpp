@@ -99,9 +99,9 @@ struct Run {
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   double y[max_states] = {};
   double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
-  bool observed[event_count] = {};  // has occurred, and was logged
-  long long transitions = 0;        // of the friction, rolling and sliding
-  solver::Counters counted = {};    // before the solver was last started from nothing
+  bool observed[event_count] = {};    // has occurred, and was logged
+  long long transitions = 0;          // of the friction, rolling and sliding
+  solver::Counters counted = {};      // before the solver was last started from nothing
 };
 
 // The counts of a run, those of the solver at work included.

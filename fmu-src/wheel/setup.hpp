@@ -64,17 +64,17 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
-  double tolerance;                // relative, of the whole solution
+  double tolerance;          // relative, of the whole solution
   double start[max_states];  // the initial state
   Origin psi, phi, X_O, Y_O;
-  double tilting;                        // rad/s, initial rate of turning about e1 and e2
-  double time_scale;                     // s, of the wheel's motion
-  double longest_step;                   // s
-  double length;                         // m, r_0 + r
-  double weight;                         // N, or the force that the time scale stands for without a weight
-  double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
-  double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
-  double slow_scales[max_states];        // error of each state that counts as one while the wheel spins slowly
+  double tilting;                   // rad/s, initial rate of turning about e1 and e2
+  double time_scale;                // s, of the wheel's motion
+  double longest_step;              // s
+  double length;                    // m, r_0 + r
+  double weight;                    // N, or the force that the time scale stands for without a weight
+  double rate_scale, moment_scale;  // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
+  double slip_scale;                // m/s, of the slip: error that counts as one, and of its margin
+  double slow_scales[max_states];   // error of each state that counts as one while the wheel spins slowly
 
   bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
 };

@@ -156,7 +156,8 @@ void put_brake_in_use(const Wheel& w, Reading& now) {
   now.scene.friction = used.scene.friction;
 }
 
-// (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the load.
+// (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
+// load.
 double size_of(const Setup& setup, const WheelFriction& law, int state, double value) {
   if (state < 0) return std::fmax(setup.weight, std::fabs(value));
   double scales[max_states];
@@ -173,7 +174,8 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   Reading now(w);
   if (known == variable::M_brake) put_brake_in_use(w, now);
   keep_ground(now);
-  for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI})  // a small step must not vanish in the rounding of a large one
+  for (const int angle :
+       {WHEEL_EULER_PSI, WHEEL_EULER_PHI})  // a small step must not vanish in the rounding of a large one
     now.x[angle] = wheel_less_turns(now.x[angle]);
   const int in_x = setup.exchanged ? place_in_x(known) : -1;
   double& place = in_x >= 0 ? now.x[in_x] : *load_entry(now.scene.load, static_cast<int>(known - first_input));

@@ -52,8 +52,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
-  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES)
-                                      : archive.numbers(run.y, max_states);
+  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(run.y, max_states);
   for (int i = 0; i < event_count; ++i) {
     archive.count(now.below[i], 0, 1);
     archive.count(run.observed[i], 0, 1);

@@ -60,9 +60,7 @@ if not (found := [*BUILD.glob("libwheel_equations.*")]):
     raise FileNotFoundError(f"{BUILD} holds no libwheel_equations: run ./scripts/build first.")
 LIBRARY = ctypes.CDLL(str(found[0]))
 FORMULATIONS = ("reduced", "multibody", "sliding", "multibody_sliding")
-REDUCED, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (
-    Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS
-)
+REDUCED, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS)
 for function in (LIBRARY.wheel_reduced_state, LIBRARY.wheel_euler_rates, LIBRARY.wheel_euler_kinematics):
     function.restype = None
 for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
