@@ -92,15 +92,15 @@ Vector3 F_beta(const Multibody& s) {
 }
 
 // (24), ready for a law of friction.
-struct Instant {
+struct Equations {
   const WheelScene& scene;
   Multibody s;
   bool slides;
   Vector9 column;  // right-hand side
 };
 
-Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
-  Instant now = {scene, Multibody(scene.wheel, y, slides), slides, {}};
+Equations equations_of(const WheelScene& scene, const double* y, bool slides) {
+  Equations now = {scene, Multibody(scene.wheel, y, slides), slides, {}};
   now.column << F(now.s, scene.load), -now.s.B_dot * now.s.q_dot;
   now.column.segment<3>(3) += F_beta(now.s);
   if (slides) now.column.segment<2>(6).setZero();
@@ -109,7 +109,7 @@ Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
 
 // Matrix of (24), with [M] from (18). Where the wheel slides, lambda_1 + mu d_X lambda_3 = 0 and the same along Y stand
 // in the place of the horizontal constraints.
-Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
+Matrix9 system_matrix(const Equations& now, double kappa, double mu) {
   const Multibody& s = now.s;
   Matrix9 K = Matrix9::Zero();
   K.block<3, 3>(0, 0) = s.wheel.m * Matrix3::Identity();
@@ -143,7 +143,7 @@ struct Solution {
 };
 
 // A ground that pulls has no friction: only the brake's part is left.
-Solution solve(const Instant& now, bool pulls) {
+Solution solve(const Equations& now, bool pulls) {
   const Multibody& s = now.s;
   const double kappa = wheel_kappa(&now.scene.friction, s.omega_z), brake = now.scene.load.brake;
   Vector9 column = now.column;
@@ -162,7 +162,7 @@ Solution solve(const Instant& now, bool pulls) {
 }
 
 // (24) under the scene's law of friction.
-Solution solve(const Instant& now) {
+Solution solve(const Equations& now) {
   const WheelGround ground = now.scene.ground;
   if (ground == WHEEL_GROUND_PULLS) return solve(now, true);
   Solution presses = solve(now, false);
@@ -172,7 +172,7 @@ Solution solve(const Instant& now) {
   return N <= 0 ? solve(now, true) : presses;
 }
 
-double spin_rate(const Instant& now, const Solution& solution) {
+double spin_rate(const Equations& now, const Solution& solution) {
   return now.scene.friction.kind == WHEEL_HELD ? 0 : omega_z_dot(now.s, solution.unknowns);
 }
 
@@ -180,7 +180,7 @@ double spin_rate(const Instant& now, const Solution& solution) {
 // Returns N, infinite where the wheel jams.
 template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  const Instant now = instant_of(*scene, y, slides);
+  const Equations now = equations_of(*scene, y, slides);
   const Multibody& s = now.s;
   const Solution solution = solve(now);
   const Vector6 &q_dot = s.q_dot, q_ddot = solution.unknowns.head<6>();
@@ -218,7 +218,7 @@ void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* 
 
 template <bool slides>
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  const Instant now = instant_of(*scene, y, slides);
+  const Equations now = equations_of(*scene, y, slides);
   const Solution solution = solve(now);
   const auto& [x, tau, determinant] = solution;
   *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_rate(now, solution), {}, tau};

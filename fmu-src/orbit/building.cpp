@@ -45,7 +45,7 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
+Orbit::Result Orbit::build(solver::Problem problem, double tolerance, OnEvent on_event, const double* y0,
                            solver::Solver& solver) {
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
   for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = y0[i];
@@ -54,7 +54,7 @@ Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass,
   *this = Orbit();
   std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
   if (is_steady(problem, from_zero)) return result_ = Result::steady;
-  result_ = follow(problem, pass, from_zero, solver);
+  result_ = follow(problem, on_event, from_zero, solver);
   counters_ = solver.counters();
   return result_;
 }
@@ -78,13 +78,13 @@ bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_
 //   the swing between both is no larger than errors: refused;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
+Orbit::Result Orbit::follow(const solver::Problem& problem, OnEvent on_event, const double* y0, solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
   bool turned = before == 0;
   if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
   for (;;) {
-    const solver::Outcome outcome = step(problem, pass, solver);
+    const solver::Outcome outcome = step(problem, on_event, solver);
     if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
     solver.read(solver.known_until(), y);
     if (y[WHEEL_OMEGA_1] != 0 && before != 0 && std::signbit(y[WHEEL_OMEGA_1]) != std::signbit(before)) {
@@ -106,13 +106,13 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
+solver::Outcome Orbit::step(const solver::Problem& problem, OnEvent on_event, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;
     double y[states];
     solver.read(solver.known_until(), y);
-    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.known_until(), y);
+    const solver::Consequence consequence = on_event(problem.owner, solver.event(), solver.known_until(), y);
     if (consequence == solver::Consequence::ends) return outcome;
     if (consequence == solver::Consequence::bends) return solver::Outcome::failed;
     const double t = solver.known_until();

@@ -63,12 +63,12 @@ class Orbit {
 
   // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be
   // unfolded.
-  using Pass = solver::Consequence (*)(void* owner, int event, double t, double* y);
+  using OnEvent = solver::Consequence (*)(void* owner, int event, double t, double* y);
 
   // Integrates `problem` (the reduced form of a wheel) from y0 by DOP853. The solver has to be started
   // anew before anything else is asked of it; its counters are those of this run. A function of problem,
   // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
-  Result build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
+  Result build(solver::Problem problem, double tolerance, OnEvent on_event, const double* y0, solver::Solver& solver);
   // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0. False where the right-hand side
   // depends on them. It can be read until it ends, or psi or phi has turned by `most_angle`, rad.
   bool enter(const solver::Problem& problem, const double* y0, double most_angle);
@@ -114,8 +114,8 @@ class Orbit {
   bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;
   bool is_steady(const solver::Problem& problem, const double* y0);
   bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
-  Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
-  solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
+  Result follow(const solver::Problem& problem, OnEvent on_event, const double* y0, solver::Solver& solver);
+  solver::Outcome step(const solver::Problem& problem, OnEvent on_event, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
   bool unfold(const solver::Problem& problem, Result kind);
   bool is_mirrored(const solver::Problem& problem, double since) const;

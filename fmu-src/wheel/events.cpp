@@ -147,7 +147,7 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 }  // namespace
 
 // Where the ground begins to pull or to press, the motion goes on as it was if there is no friction.
-Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
   if (row.observed) now.cross(row.event);
   const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();

@@ -42,7 +42,7 @@ inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends 
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }
 
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
-Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
 
 // (row, t, y) => its margin
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);

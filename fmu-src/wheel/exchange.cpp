@@ -82,7 +82,7 @@ Event ending_at(const Setup& setup, const Run& run) {
 void decide_friction(const Setup& setup, Run& run, bool led) {
   const EventRow& row = row_of(Event::spin_changes);
   if (led && has_occurred(row, setup, run))
-    pass(row, setup, run.t, run.y, run.in_force);
+    follow_event(row, setup, run.t, run.y, run.in_force);
   else
     decide_law(setup, run.t, run.y, run.in_force);
 }
@@ -127,10 +127,10 @@ int place_in_x(unsigned variable) {
 
 int place_in_y(int in_x) { return states_of_y[in_x]; }
 
-void apply_at_once(Wheel& w) {
+void act_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
   const InForce before = now;
-  apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
+  set_road_and_inputs(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.news = News::none;
   if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);

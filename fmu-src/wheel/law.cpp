@@ -48,14 +48,14 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 }  // namespace
 
-void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
-  apply_loads(setup, road_asked(demand), t, demand.inputs, now);
+void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
+  set_road_and_inputs(setup, road_asked(demand), t, demand.inputs, now);
   if (setup.steered()) set_guide_rates(setup, demand, now.scene, false, y);
   now.layered = false;
   decide_contact(setup, t, y, now);
 }
 
-void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
+void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
   now.road = road;
   now.scene.wheel = setup.scene.wheel;
   now.scene.wheel.s = road.s;

@@ -8,10 +8,10 @@ namespace wheel {
 
 // (demand, t, y) => in_force, y: what the caller has set is in force from t on, and with it the contact and the law of
 // friction. In y it writes the slip, and what a jump of the carrier's rates changes.
-void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
+void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // (road, t, inputs) => in_force: both, and what follows from them alone. A mu_max set below mu_slide counts for both.
-void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
+void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
 // (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
 // it had always turned so.

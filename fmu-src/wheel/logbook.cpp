@@ -21,7 +21,7 @@ Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
   const EventRow& row = row_of(event);
   const InForce before = run.in_force;
-  const Consequence consequence = pass(row, wheel.setup, run.t, run.y, run.in_force);
+  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) observe(wheel, event, run.t);
   log_changes(wheel, before, event);
   return consequence;

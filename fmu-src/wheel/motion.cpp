@@ -68,7 +68,7 @@ Outcome apply_demand(Wheel& w) {
   if (!changed) return Outcome::stepped;
   const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
-  apply(w.setup, w.demand, run.t, run.y, run.in_force);
+  enforce(w.setup, w.demand, run.t, run.y, run.in_force);
   log_changes(w, before);
   if (run.phase == Phase::at_start) return Outcome::stepped;
   const double interval = run.t - run.last_change;
@@ -101,7 +101,7 @@ bool enter_orbit(Wheel& w) {
   const solver::Problem problem = problem_of(w);
   if (w.orbit_shape != asked || orbit.is_refused()) {
     const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solver);
+    orbit.build(problem, w.demand.tolerance, follow_on_orbit, w.setup.start, w.solver);
     w.run.in_force = at_start;
     w.orbit_shape = asked;
   }

@@ -129,13 +129,13 @@ solver::Problem problem_of(Wheel& wheel) {
   return problem;
 }
 
-Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
+Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
   double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
-  return pass(row, wheel.setup, t, state, wheel.run.in_force);
+  return follow_event(row, wheel.setup, t, state, wheel.run.in_force);
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
