@@ -3,6 +3,7 @@
  * e3; x along e1, y horizontal to the left of it. docs/equations.md derives every line. */
 #include <string.h>
 
+#include "axle_law.h"
 #include "frame.h"
 
 /* What acts apart from the ground's friction, or its change. */
@@ -11,7 +12,7 @@ typedef struct Action {
   double N_still;  /* N, normal force for omega_1_dot = 0 */
   double a_x, a_y; /* m/s2, rate of the slip without friction and omega_dot */
   double guide[2]; /* rad/s2, omega_1_dot and omega_2_dot that a wheel carrier gives */
-  double brake;    /* N m */
+  double brake;    /* N m, of the law about the axle */
 } Action;
 
 static const Action none = {.brake = 0};
@@ -25,9 +26,9 @@ typedef struct Body {
   double per_mass, per_spin, per_22, per_tilt; /* inverse of m, J_z, I_22, and of I_11 - p^2 / I_22 + m l^2 */
   double g_x, g_y;                             /* what a unit of the ground's horizontal force adds to N */
   double N_free;                               /* N, normal force without sliding friction */
-  double mu, s;                                /* 1 and m, coefficients of the ground's friction; zero where it pulls */
-  double kappa;                                /* tau = -(s N + brake) kappa */
-  int held;                                    /* omega_3 is held at zero */
+  double mu;                                   /* coefficient of the ground's friction; zero where it pulls */
+  AxleLaw law;                                 /* for kappa = 1; its brake is part of what is given */
+  double kappa;                                /* tau is that of the law times kappa */
   int guided;                                  /* no moment turns the wheel across its axle: a wheel carrier does */
 } Body;
 
@@ -50,8 +51,9 @@ static inline Response response_of(const WheelParameters* w, const Body* b, cons
     a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
   }
   a.N = on->N_still + w->m * b->l * a.omega_1_dot;
-  a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
-  a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
+  const AxleLaw law = {.lever = b->law.lever, .brake = on->brake};
+  a.tau = b->law.held ? -M_3 : axle_moment_of(&law, a.N) * b->kappa;
+  a.omega_3_dot = b->law.held ? 0 : (M_3 + a.tau) * b->per_spin;
   return (Response){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,
@@ -84,14 +86,14 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   a->N_still = w->m * (w->g - w->r_0 * f->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + f->omega_1 * (w->r * f->sin_theta * f->omega_2 + f->eta * f->omega_3 - f->psi_dot * b.h);
   a->a_y = F_y * b.per_mass + b.l * omega_1_2 - f->psi_dot * f->v_1;
-  a->brake = load->brake;
   b.kappa = kappa_of(&scene->friction, f->omega_3);
-  b.held = scene->friction.kind == WHEEL_HELD;
+  b.law = axle_law_of(scene, 1, 1);
+  a->brake = b.law.brake;
   b.N_free = response_of(w, &b, a, 0, 0).a.N;
   /* The sign of N is that without sliding friction as long as there is room. */
   if (scene->ground == WHEEL_GROUND_PULLS || (scene->ground == WHEEL_GROUND_BY_FORCE && b.N_free <= 0)) return b;
   b.mu = scene->mu_slide;
-  b.s = w->s;
+  b.law = axle_law_of(scene, 1, 0);
   return b;
 }
 

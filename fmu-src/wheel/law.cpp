@@ -152,7 +152,7 @@ Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
   constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
   scene.friction = held;
   const WheelDynamics dynamics = dynamics_of(setup, scene, y);
-  const double capacity = scene.wheel.s * std::max(dynamics.lambda[2], 0.0) + scene.load.brake;
+  const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};
 }
@@ -172,7 +172,7 @@ double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
   const double N = std::max(setup.weight, rates_of(setup, scene, y).N);
-  return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia);
+  return wheel_axle_capacity(wheel.s, N, scene.load.brake) / (setup.omega_s * inertia);
 }
 
 // To be compared with the time scale; below the limit DOP853 alone is faster through the layer.
