@@ -109,7 +109,7 @@ void Solver::look_for_events(double from) {
     } else {
       hi = search.sample(step_.end, step_.y_end);
       values_[i] = hi.g;
-      if (extremes.empty() && stays_above(search, lo, hi)) continue;
+      if (extremes.empty() && is_far(search, lo, hi)) continue;
       expand();
     }
     if (hi.t != known_until_) hi = search.sample(known_until_);
@@ -131,7 +131,7 @@ bool Solver::comes_near(const Search& search) {
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to show.
-bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
+bool Solver::is_far(const Search& search, Sample lo, Sample hi) const {
   if (!(step_.inside_at > 0) || lo.t != step_.start) return false;
   const double t = step_.start + step_.inside_at * (step_.end - step_.start);
   return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);

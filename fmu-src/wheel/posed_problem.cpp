@@ -70,7 +70,7 @@ double margin(void* owner, int event, double t, const double* y) {
 }
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
-void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
+void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
@@ -115,12 +115,12 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   const int spin = WHEEL_OMEGA_3;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, solver::Settling::none, slopes_of_spin};
   if (now.in_layer()) {  // an eighth of it
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.settling = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
+  if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;
