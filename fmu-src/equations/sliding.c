@@ -169,7 +169,8 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   const double rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
   Body b = body_of(scene, reduced, scene->guided);
-  Response free = response_of(w, &b, &b.given, 0, 0), x = response_of(w, &b, &none, 1, 0), y = response_of(w, &b, &none, 0, 1);
+  Response free = response_of(w, &b, &b.given, 0, 0), x = response_of(w, &b, &none, 1, 0),
+           y = response_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
   double least = -rounding * (fabs(free.u_x) + fabs(free.u_y)), chi = NAN;

@@ -45,21 +45,28 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-Orbit::Result Orbit::build(solver::Problem problem, double tolerance, OnEvent on_event, const double* y0,
-                           solver::Solver& solver) {
+bool Orbit::enter(const Motion& motion, bool known, solver::Solver& solver) {
+  if (!known || result_ == Result::refused) build(motion, solver);
+  return result_ != Result::refused && begin(motion);
+}
+
+Orbit::Result Orbit::build(const Motion& motion, solver::Solver& solver) {
+  const double tolerance = motion.tolerance;
+  solver::Problem problem = motion.problem;
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = y0[i];
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = motion.y0[i];
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   problem.longest_step *= shortening;
   *this = Orbit();
   std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
   if (is_steady(problem, from_zero)) return result_ = Result::steady;
-  result_ = follow(problem, on_event, from_zero, solver);
+  result_ = follow(problem, motion.on_event, from_zero, solver);
   counters_ = solver.counters();
   return result_;
 }
 
-bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_angle) {
+bool Orbit::begin(const Motion& motion) {
+  const double* y0 = motion.y0;
   latest_half_ = {};
   start_.psi_sum = y0[WHEEL_PSI];
   start_.phi_sum = y0[WHEEL_PHI];
@@ -68,8 +75,8 @@ bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
   const double t = 0.6 * T2_;
   const auto turn = [&](double* rate) { set_place(rate, start_.rotation * place_of(rate)); };
-  if (!maps(problem, t, t, turn)) return false;
-  until_ = ends() ? T2_ : most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
+  if (!maps(motion.problem, t, t, turn)) return false;
+  until_ = ends() ? T2_ : motion.most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
   return true;
 }
 
@@ -78,7 +85,8 @@ bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_
 //   the swing between both is no larger than errors: refused;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, OnEvent on_event, const double* y0, solver::Solver& solver) {
+Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0,
+                            solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
   bool turned = before == 0;
@@ -106,7 +114,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, OnEvent on_event, co
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, OnEvent on_event, solver::Solver& solver) {
+solver::Outcome Orbit::step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;

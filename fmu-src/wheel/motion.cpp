@@ -98,16 +98,14 @@ bool enter_orbit(Wheel& w) {
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
-  const solver::Problem problem = problem_of(w);
-  if (w.orbit_shape != asked || orbit.is_refused()) {
-    const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    orbit.build(problem, w.demand.tolerance, follow_on_orbit, w.setup.start, w.solver);
-    w.run.in_force = at_start;
-    w.orbit_shape = asked;
-  }
-  if (orbit.is_refused() || !orbit.enter(problem, w.setup.start, largest_angle)) return false;
-  w.run.counted = orbit.counters();
-  return true;
+  const bool known = w.orbit_shape == asked;
+  const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
+  const orbit::Motion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
+  const bool entered = orbit.enter(motion, known, w.solver);
+  w.run.in_force = at_start;
+  w.orbit_shape = asked;
+  if (entered) w.run.counted = orbit.counters();
+  return entered;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.

@@ -268,7 +268,8 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   if (guides && !w.setup.steered()) return true;
   Quotients quotients;
   for (std::size_t k = 0; k < count; ++k) quotients.ask(unknowns[k]);
-  if (!(parameter || guides ? take_by_parameter(w, known, quotients) : take_at_instant(w, known, quotients))) return false;
+  if (!(parameter || guides ? take_by_parameter(w, known, quotients) : take_at_instant(w, known, quotients)))
+    return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * quotients.of(unknowns[k]);
   return true;
 }
