@@ -35,6 +35,7 @@ struct Pass {
   using Numbers = std::array<double, count>;
   bool asked[computed] = {}, by_force = false;
   Numbers centre = {}, slope = {}, error;
+  std::array<bool, count> exact = {};  // smaller steps are of no use, whatever else is asked for
 
   Pass() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
 
@@ -74,19 +75,19 @@ struct Pass {
       const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
       // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
-      if (likely >= error[i]) continue;
+      if (exact[i] || likely >= error[i]) continue;
       slope[i] = quotient[i];
       error[i] = likely;
     }
     return true;
   }
 
-  // Whether smaller steps are of no use; scale: of the variable.
-  bool is_exact(double scale) const {
+  // (scale: of the variable) => exact; whether all are
+  bool settle(double scale) {
     constexpr double relative = 1e-11;
     for (std::size_t i = 0; i < count; ++i)
-      if (!(error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale))) return false;
-    return true;
+      exact[i] |= error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale);
+    return std::all_of(exact.begin(), exact.end(), [](bool of) { return of; });
   }
 
   // Smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
@@ -98,7 +99,7 @@ struct Pass {
     constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
     bool done = false;
     double part = 1e-3;
-    while (part > (done ? finest : finest_first) && !is_exact(scale)) {
+    while (part > (done ? finest : finest_first) && !settle(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
                           [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
       part *= 0.1;
