@@ -122,7 +122,7 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
         marks += _over_time(ax, scene["time"], scene[name], style.colour(name))
         most = int(np.argmax(abs(scene[name])))
         high = scene[name][most] > 0
-        place, shift = {"va": "bottom" if high else "top", **_inward(scene, scene["time"][most])}, (0, 3 if high else -3)
+        place, shift = {"va": "bottom" if high else "top", **_inward(scene, scene["time"][most])}, (2, 3 if high else -3)
         if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
             most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
         at, color = (scene["time"][most], scene[name][most]), style.colour(name)
