@@ -183,7 +183,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const bool begins = now.scene.contact == WHEEL_SLIDES && before.contact == WHEEL_GRIPS;
   const auto move_to = [&](double x) {
     place = x;
-    if (begins) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
+    if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
     return true;
   };
   begins ? pass.refine(place, size, now, move_to) : pass.take(stencils[0], place, 1e-3 * size, now, move_to);
@@ -191,7 +191,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   return true;
 }
 
-// (y, y_dot of the reduced forms) => how fast the wheel moves, 1/s.
+// (y, y_dot) => how fast the wheel moves, 1/s.
 double pace_of(const double* y, const double* y_dot, bool slides) {
   double swing = 0;
   for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) swing += std::fabs(y_dot[rate]);
@@ -200,16 +200,11 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
   return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + chi_dot;
 }
 
-// In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
-// its rate can be large, and acts as a moment about the axle.
+// In a small part of the time in which the wheel itself moves. kappa of a regularized law is kept: its rate can be
+// large, and acts as a moment about the axle.
 void take_along_motion(Wheel& w, Pass& pass) {
-  const Reading whole(w);
-  Setup setup = w.setup;
-  setup.formulation = &wheel_reduced;
-  if (setup.sliding) setup.sliding = &wheel_sliding;
-  Reading start = whole;
-  start.setup = &setup;
-  formulation_of(w.setup, whole.scene).reduce(whole.y, start.y);
+  const Setup& setup = w.setup;
+  Reading start(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
     start.y[angle] = wheel_less_turns(start.y[angle]);
   keep_ground(start);
