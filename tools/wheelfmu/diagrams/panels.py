@@ -15,7 +15,7 @@ from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, Scalar
 from numpy.typing import ArrayLike
 
 from wheelfmu.diagrams import style
-from wheelfmu.diagrams.scene import STILL, Array, Scene
+from wheelfmu.diagrams.scene import Array, Scene
 
 MARK_STEP = 5  # degrees of theta between the candidates for a mark along an arc
 MARK_ROOM = np.array([0.28, 0.06])  # of the axes: no second mark within this width and height
@@ -122,7 +122,8 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
         marks += _over_time(ax, scene["time"], scene[name], style.colour(name))
         most = int(np.argmax(abs(scene[name])))
         high = scene[name][most] > 0
-        place, shift = {"va": "bottom" if high else "top", **_inward(scene, scene["time"][most])}, (2, 3 if high else -3)
+        place = {"va": "bottom" if high else "top", **_inward(scene, scene["time"][most])}
+        shift = (2, 3 if high else -3)
         if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
             most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
         at, color = (scene["time"][most], scene[name][most]), style.colour(name)
