@@ -58,10 +58,14 @@ class Part:
     axes: Mapping[str, Axis]
     pictures: dict[str, Callable[[Tables], Figure]] = field(default_factory=dict)
 
-    def picture(self, draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
-        """Of a function that draws from tables, of which this part measures one: a picture, by the function's name."""
-        self.pictures[draw.__name__] = draw
-        return draw
+    def picture(self, name: str) -> Callable[[Callable], Callable]:
+        """Names the picture that a function draws from tables, of which this part measures one."""
+
+        def keep(draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
+            self.pictures[name] = draw
+            return draw
+
+        return keep
 
     @property
     def name(self) -> str:
