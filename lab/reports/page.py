@@ -149,6 +149,8 @@ class Report:
         known = [(self.name, figure, f"{value:.7g}") for figure, value in found.items() if not np.isnan(value)]
         update(self.folder, "figures", pd.DataFrame(known, columns=["report", "figure", "measured"]))
         short = {name: frame for name, frame in self.tables.items() if len(frame) <= SHORT}
+        for name in short:  # one that was long has a file of its own
+            (self.folder / "data" / f"{self.name}_{name}.csv").unlink(missing_ok=True)
         for name in self.tables.keys() - short.keys():
             write_csv(self.folder, f"{self.name}_{name}", self.tables[name])
         if texts := [f"# {name}\n{csv_of(frame)}" for name, frame in short.items()]:
@@ -187,7 +189,9 @@ def read_tables(name: str, folder: Path = RESULTS) -> Tables:
 def read_figures(name: str, folder: Path = RESULTS) -> Row:
     """The figures of a report as measured, those that are listed."""
     path = folder / "data" / "figures.csv"
-    known = pd.read_csv(path).query("report == @name") if path.exists() else pd.DataFrame({"figure": [], "measured": []})
+    known = (
+        pd.read_csv(path).query("report == @name") if path.exists() else pd.DataFrame({"figure": [], "measured": []})
+    )
     measured = dict(zip(known["figure"], known["measured"], strict=True))
     return {figure: measured[figure] for figure in REQUIREMENTS.loc[name].index if figure in measured}
 

@@ -136,7 +136,9 @@ def figures(tables: Tables) -> Row:
     found["heyoka_stepped"] = max(beside[name] for name in ("friction", "general inertia"))
     smooth = [over(runs, "adams", "runge_kutta") for name, runs in scenes.items() if name != "stiff law"]
     found |= {"adams_least": np.min(smooth), "adams_most": np.max(smooth)}
-    is_tight = (tables["programs"]["program"] == "wheel.fmu") & np.isclose(tables["programs"]["tolerance"].astype(float), 1e-13)
+    is_tight = (tables["programs"]["program"] == "wheel.fmu") & np.isclose(
+        tables["programs"]["tolerance"].astype(float), 1e-13
+    )
     found["benchmark"] = tables["programs"].loc[is_tight, "error / range"].max()
     return found | {"rule": ratios.max(), "free_rule": ratios["free"]}
 
@@ -326,4 +328,3 @@ def draw_races(tables: Tables) -> Sheet:
         races.dress(ax, title)
     plots.legend_below(figure, axes)
     return figure
-

@@ -12,7 +12,7 @@ from wheelfmu.truth.measure import law_error
 
 from . import plots
 from .page import Report, Row, Tables, number, part
-from .plots import Sheet, style
+from .plots import Sheet
 
 METHODS = ("automatic", "bdf")
 OF_LAW = {"tolerance": (1e-4, 1e-6, 1e-8), "omega_s, rad/s": tuple(10.0**-k for k in range(1, 9)), "method": METHODS}
@@ -26,7 +26,6 @@ def law(report: Report, tolerance: float, omega_s: float, method: str) -> Row:
 
 @law.picture("law")
 def draw_law(tables: Tables) -> Sheet:
-    """Of the regularized law to the exact one."""
     figure, (ax,) = plots.sheet("a")
     for colour, (tolerance, points) in zip(plots.COLOURS, tables["law"].groupby("tolerance", sort=False), strict=False):
         for method, marker in zip(METHODS, ("o-", "x--"), strict=True):
@@ -70,4 +69,3 @@ def hours(report: Report) -> dict[str, object]:
     runs = pd.DataFrame([long_run(report, *run) for run in chosen])
     growth, rise = runs["µs/s, last sixth"] / runs["µs/s, first sixth"], runs["largest rise, J"] / runs["E"]
     return {"hours": runs.drop(columns="E"), "growth": growth.max(), "rise": rise.max() / TOLERANCE}
-

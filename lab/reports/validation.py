@@ -120,4 +120,3 @@ def draw_tyres(tables: Tables) -> Sheet:
     title = "Coast-down: measured (dots), wheel.fmu (lines)"
     plots.label(right, "time [s]", "rim speed [m/s]", title, xlim=(0, None), ylim=(0, 22))
     return sheet
-

@@ -82,7 +82,9 @@ def rates_of(k: np.ndarray, d: np.ndarray) -> dict[str, np.ndarray]:
     return rates | {"omega_z": d["omega_z_dot"], "omega_2": d["psi_ddot"] * np.sin(k["theta"]) + turning}
 
 
-def test_a_spin_set_to_zero_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(formulation: eq.Formulation) -> None:
+def test_a_spin_set_to_zero_leaves_a_rolling_wheel_that_holding_takes_no_energy_from(
+    formulation: eq.Formulation,
+) -> None:
     scenes, motions = draw(32, eq.HELD, symmetric=False)
     y = eq.start_each(formulation, scenes, motions)
     before = eq.kinematics_each(formulation, scenes, y)
