@@ -47,7 +47,7 @@ def conduct(arguments: argparse.Namespace) -> None:
 
     content = content_of(arguments.study)
     study, stem = content["study"], ROOT / "results" / "studies" / content["name"]
-    arguments.out = out = str(content.get("out") or arguments.out or f"{stem}.zarr")
+    arguments.out = out = str(content.get("out") or arguments.out or f"{stem}.zarr").removeprefix("file://")
     if "://" not in out:
         stem = Path(out.removesuffix(".zarr"))
     asked = {".nc": arguments.netcdf, ".csv": arguments.csv}

@@ -65,7 +65,8 @@ def run(
 
     The progress bar is for terminals; the environment variable TQDM_DISABLE=1 hides it there.
     """
-    fmu, place = Path(fmu), str(out) if "://" in str(out) else str(Path(out).resolve())
+    fmu, place = Path(fmu), str(out).removeprefix("file://")
+    place = place if "://" in place else str(Path(place).resolve())
     if not fmu.is_file():
         raise Fault(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
     study.check(values.variables(description(fmu)))
