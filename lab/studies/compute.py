@@ -26,7 +26,7 @@ import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
 from dask.system import CPU_COUNT
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 
@@ -150,7 +150,8 @@ def finished(client: Client, submit: Callable, regions: list[Region]) -> Iterato
 
     Regions during which a worker died come last, wheel by wheel, until those that kill it are known.
     """
-    left, sent, suspects = iter(regions), {}, []
+    left, suspects = iter(regions), []
+    sent: dict[Future, Region] = {}
     done = as_completed(loop=client.loop)
 
     def fill_up() -> None:

@@ -142,7 +142,7 @@ class Study:
 
     def bodies(self, variables: Mapping[str, Variable]) -> Iterator[dict[str, float]]:
         """Mass, size and moments of inertia of the wheels, each combination once."""
-        same = {name: variables[name].preset for name in BODY} | self.values
+        same = {name: variables[name].preset for name in BODY} | {**self.values}
         varied = {name: xs for name, xs in self.varied.items() if name in BODY}
         for xs in zip(*varied.values(), strict=True) if self.list and varied else product(*varied.values()):
             yield same | dict(zip(varied, xs, strict=True))

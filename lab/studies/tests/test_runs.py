@@ -21,6 +21,7 @@ from .studies_support import FATES, same
 DESCRIPTION = (ROOT / "modelDescription.xml").read_bytes()
 JAMS = SLIDES["jams"].start
 
+
 @pytest.fixture(scope="module")
 def rolled(alone) -> xr.Dataset:
     measures = {"low": "min(theta)", "high": "max(theta)", "mean": "mean(theta)", "down": " first( theta < +8e-1 ) "}

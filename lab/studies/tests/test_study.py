@@ -1,6 +1,5 @@
 """Studies with many workers: bit-identical to one, with a scheduler elsewhere, and in any file system."""
 
-import json
 import re
 import shlex
 import subprocess
