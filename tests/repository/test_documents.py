@@ -71,7 +71,7 @@ def files(*patterns: str) -> list[str]:
 
 
 NAMED = re.compile(r"`(?:\./)?((?:[\w.-]+/)+[\w.-]*)`")
-WRITTEN = ("build/", "results/")  # by commands
+WRITTEN = ("build/", "results/", "dist/")  # by commands; dist/ is in the repository once there is a release
 
 
 def missing(text: str) -> list[str]:
