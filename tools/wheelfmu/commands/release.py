@@ -1,5 +1,5 @@
-"""Builds one wheel.fmu for Linux, Windows and macOS, on Linux (x86-64), and tests it as far as it runs here. Every library
-is built twice, in two folders; the two FMUs must be identical files. Writes
+"""Builds one wheel.fmu for Linux, Windows and macOS, on Linux (x86-64), and tests it as far as it runs here. Every
+library is built twice, in two folders; the two FMUs must be identical files. Writes
 
   dist/                        wheel.fmu, the lesson, and README.md with version, source commit and SHA-256 sums
   docs/results/platforms.md    what was run and what was only built
