@@ -326,7 +326,7 @@ def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_co
     said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: held"]], 175.0, 7.5))
     assert said.count("Purple at the bottom: it slides") == 1 == said.count("Thick: held")
     assert said.index("Rolling resistance: no transitions") < said.index("Thick") < said.index("Purple")
-    assert "friction: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling resistance")
+    assert "resistance: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling resistance")
     assert not re.search(r": [A-Z]", said)
 
 
