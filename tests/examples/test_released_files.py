@@ -88,7 +88,8 @@ def test_the_page_of_a_release_names_its_commit_and_what_lies_beside_it(tmp_path
 
 def test_a_release_names_a_commit_that_has_all_its_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def git(*words: str) -> str:
-        return subprocess.check_output(["git", "-c", "user.name=a", "-c", "user.email=a", *words], cwd=tmp_path, text=True)
+        command = ["git", "-c", "user.name=a", "-c", "user.email=a", *words]
+        return subprocess.check_output(command, cwd=tmp_path, text=True)
 
     monkeypatch.setattr(folder, "ROOT", tmp_path)
     git("init", "-q")

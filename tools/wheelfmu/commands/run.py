@@ -16,8 +16,8 @@
 It installs, builds, leaves wheel.fmu here, simulates both scenes with the fmpy command line, and writes into
 results/: wheel.html, a 3D page of the motion; the diagrams; free.csv and friction.csv. Any parameter or input of
 docs/variables.md can be given, each once. A warning names moments of inertia that no mass within the wheel's outline
-has. The error of both runs is estimated by another solver (docs/recipes.md). An input keeps its value for the whole run;
-docs/in_your_tool.md shows one that varies.
+has. The error of both runs is estimated by another solver (docs/recipes.md). An input keeps its value for the whole
+run; docs/in_your_tool.md shows one that varies.
 
 The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
 packages into .venv, and compiles. cargo-web is among the packages because cargo downloads the pinned source of
