@@ -9,16 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
+from support.printed import PAGES
 
 from wheelfmu.fmu.paths import ROOT, build_folder
-from wheelfmu.publishing.markdown import pages
 from wheelfmu.truth.closed_forms import fall_inertia
 from wheelfmu.truth.scenes import PAPER
 
-TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in pages() if page.suffix == ".md"}
-README, TOOLS, RECIPES = (TEXTS[name] for name in ("README.md", "docs/in_your_tool.md", "docs/recipes.md"))
-VEHICLE, CONTROL = TEXTS["docs/vehicle.md"], TEXTS["docs/linearize_and_control.md"]
-HEADER_PAGE = TEXTS["docs/c_header.md"]
+README, TOOLS, RECIPES = (PAGES[name] for name in ("README.md", "docs/in_your_tool.md", "docs/recipes.md"))
+VEHICLE, CONTROL = PAGES["docs/vehicle.md"], PAGES["docs/linearize_and_control.md"]
+HEADER_PAGE = PAGES["docs/c_header.md"]
 EXAMPLES = ROOT / "examples" / "python"
 
 
@@ -218,22 +217,22 @@ def programs(page: str) -> list[tuple[str, str]]:
 
 LOG = re.compile(r"\[(OK|WARNING|DISCARD|ERROR|FATAL|INFO)\]")  # as FMPy prints a message
 # Those of studies are run by the tests of lab/studies; the output of programs in files is that of SHOWN.
-PROGRAMS = [(name, k) for name, page in TEXTS.items() if name[:4] != "lab/" for k in range(len(programs(page)))]
+PROGRAMS = [(name, k) for name, page in PAGES.items() if name[:4] != "lab/" for k in range(len(programs(page)))]
 
 
 @pytest.mark.parametrize(("name", "number"), PROGRAMS)
 def test_a_program_on_a_page_runs_and_prints_what_the_page_shows(root, name, number):
-    lines, expected = programs(TEXTS[name])[number]
+    lines, expected = programs(PAGES[name])[number]
     if "casadi" in lines:
         pytest.importorskip("casadi")
     printed = [line for line in python(lines, root).splitlines() if not LOG.match(line)]
-    for of_a_file in {shown(example) for example in SHOWN if SHOWN[example] == TEXTS[name]}:
+    for of_a_file in {shown(example) for example in SHOWN if SHOWN[example] == PAGES[name]}:
         expected = expected.replace(of_a_file, "")
     assert printed == expected.splitlines() or not expected
 
 
 def test_every_program_is_found():
-    counts = {name: len(programs(page)) for name, page in TEXTS.items()}
+    counts = {name: len(programs(page)) for name, page in PAGES.items()}
     assert counts["docs/first_suspension.md"] == 1 and counts["docs/linearize_and_control.md"] == 2
-    fragments = {name: page for name, page in TEXTS.items() if blocks("python", page) and not programs(page)}
+    fragments = {name: page for name, page in PAGES.items() if blocks("python", page) and not programs(page)}
     assert {*fragments} == {"docs/teaching.md"}
