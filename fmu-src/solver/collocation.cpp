@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
@@ -55,15 +57,15 @@ constexpr Table make_table() {
 }
 constexpr Table radau = make_table();
 
-// The error that one step may make, as a fraction of the tolerance of the whole solution.
-constexpr double part_of_tolerance = 0.2;
-// How far the sweeps may be from their limit, over the error of the step; the error of the polynomial against its last
-// term, which falls less fast where the turning is steep.
-constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.1;
-constexpr int most_sweeps = 30, most_tries = 40;
-constexpr double longer = 1.01;  // of the stop
-// The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.
-constexpr double roundings = 2;
+CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over the tolerance of the whole solution");
+CONSTANT(double, distance, 0.1, "1", "how far the sweeps may be from their limit, over the error of the step");
+CONSTANT(double, error_of_last, 0.005, "1", "error of the polynomial over its last term");
+CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the terms fall less fast");
+CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
+CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
+CONSTANT(double, longer, 1.01, "1", "a step that nearly reaches the stop ends there: no tiny step");
+CONSTANT(double, roundings, 2, "roundings of time",
+         "the shortest step: settling states may do in it what they will, the others hardly move");
 
 // (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
@@ -71,16 +73,14 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
 }
 
-// Newton's matrix for the rates at the points of a state that settles, and what follows them.
-struct Newton {
-  Eigen::PartialPivLU<Square> matrix;
-  Row others = Row::Zero();
-};
-
 }  // namespace
 
+// Newton's matrices for the rates at the points of the states that settle, and what follows them.
 struct Collocation::Newtons {
-  Newton steep, turning;
+  struct Newton {
+    Eigen::PartialPivLU<Square> matrix;
+    Row others = Row::Zero();
+  } steep, turning;
 };
 
 // (rates at the points) => Newton's matrices
@@ -90,7 +90,7 @@ void Collocation::prepare(const Problem& problem, const Step& step, Newtons* new
   const auto along = [&](int i) -> Column { return (size_ * integral * f.col(i)).array() + step.y_start[i]; };
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
   const auto linearise = [&](const Settling& settling) {
-    Newton newton;
+    Newtons::Newton newton;
     Column slopes;
     const Column values = along(settling.state);
     settling.slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
@@ -121,7 +121,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     step->least_margin = j == 0 ? margin : std::fmin(step->least_margin, margin);
     if (problem.turning) speeds[j] = y[problem.turning->speed];
   }
-  const auto settle = [&](const Settling& settling, const Newton& newton) {
+  const auto settle = [&](const Settling& settling, const Newtons::Newton& newton) {
     const int state = settling.state;
     Column residual = f.col(state) - before.col(state);
     if (settling.speed != Settling::none) residual = speeds.cwiseProduct(residual);
@@ -203,7 +203,9 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
 // (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend on the size
 // of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
-  const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
+  CONSTANT(double, safety, 0.8, "1", "a step is sized for an error of safety^8, so that few are refused");
+  CONSTANT(double, least_error, 1e-6, "1", "smaller errors are mostly rounding");
+  const double fitting = safety / eighth_root(std::fmax(error, least_error));
   const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
   if (!known_ || !stops || next < liked_) liked_ = next;
   if (!known_ || !problem.turning) return;

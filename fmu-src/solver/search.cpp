@@ -19,11 +19,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
-// Halvings of a step, and evaluations in the search for a value below zero between two extremes.
-constexpr int most_halvings = 7, most_samples = 48;
+CONSTANT(int, most_halvings, 7, "halvings", "the narrowest dip that is looked for lasts 1/128 of a step");
+CONSTANT(int, most_samples, 48, "evaluations", "between two extremes: a noisy function costs no more than four steps");
+// How far g may lie below the parabola through three samples.
+CONSTANT(double, of_bend, 0.25, "1", "of its bend: what a fourth sample of smooth functions shows");
+CONSTANT(double, of_range, 0.1, "1", "of its range: the same for functions without a bend");
 
 // g = lo.g + x (slope + bend (x - middle)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
 struct Parabola {
@@ -46,14 +51,13 @@ Sample Search::sample(double t) const {
   return sample(t, y);
 }
 
-// How far g may lie below the parabola: a quarter of its bend and a tenth of its range.
 bool Search::stays_above(Sample lo, Sample mid, Sample hi) {
   double lowest = std::fmin(mid.g, std::fmin(lo.g, hi.g));
   if (!(lowest > 0)) return lowest == 0 && lo.g == 0 && mid.g == 0 && hi.g == 0;
   const Parabola p(lo, mid, hi);
   const double x = p.lowest_at(), range = std::fmax(mid.g, std::fmax(lo.g, hi.g)) - lowest;
   if (x > 0 && x < 1) lowest = std::fmin(lowest, p.value(lo.g, x));
-  return lowest > 0.25 * std::fabs(p.bend) + 0.1 * range;
+  return lowest > of_bend * std::fabs(p.bend) + of_range * range;
 }
 
 // (three samples, lo.g >= 0) => the first one below zero that can be found, and the one before it. An interval is left

@@ -4,16 +4,20 @@
 
 #include <algorithm>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
 // (step, instant of an event in it) => latest end of the step after the event, s. An event right behind the start of
 // its step, which most often began at another event, shows that the step was too long for the motion between the two: a
-// thousandth of it is next.
+// small part of it is next.
 double first_stop_after(const Step& step, double t) {
+  CONSTANT(double, behind, 1e-6, "of the step", "an event nearer to the start of its step is right behind it");
+  CONSTANT(double, part, 1e-3, "of the step", "long enough to grow again within three steps");
   const double length = step.end - step.start;
-  if (!(t - step.start < 1e-6 * length)) return never;
-  return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
+  if (!(t - step.start < behind * length)) return never;
+  return t + std::fmax(part * length, 0.5 * rounding_at(t));
 }
 
 }  // namespace

@@ -2,14 +2,15 @@
 // follows. Stepping, the unfolded wheel, model exchange and snapshots work from this table (events.cpp).
 #pragma once
 
+#include "constant.hpp"
 #include "run.hpp"
 
 namespace wheel {
 
 using solver::Consequence;
 
-// omega_z over the scale of rates: beyond zero by less, a spin is the error of the solver that brought it there.
-inline constexpr double spin_error = 1e-3;
+CONSTANT(double, spin_error, 1e-3, "of the scale of rates",
+         "beyond zero by less, a spin is the error of the solver that brought it there");
 
 struct EventRow {
   Event event;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
@@ -12,13 +13,11 @@
 namespace wheel {
 namespace {
 
-// Added to every indicator: one that rests at zero after an event must not count as a second one. At 1e-6 the instants
-// would be wrong by as much.
-constexpr double distance = 1e-12;
-
-// An event that lies ahead by less than this, in units of the time scale, has happened: some solvers stop a little
-// before the sign changes, and would stop there again and again.
-constexpr double soon = 1e-7;
+CONSTANT(double, distance, 1e-12, "1",
+         "added to every indicator: one that rests at zero after an event must not count as a second one; at 1e-6 the "
+         "instants would be wrong by as much");
+CONSTANT(double, soon, 1e-7, "time scales",
+         "an event so close ahead has happened: some solvers stop before the sign changes, again and again");
 
 // In the order of x: its variables, and the states of y to which they belong.
 constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,

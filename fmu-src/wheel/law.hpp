@@ -2,6 +2,7 @@
 // the wheel rolls or slides after Coulomb. Pure functions of setup, load and state.
 #pragma once
 
+#include "constant.hpp"
 #include "run.hpp"
 
 namespace wheel {
@@ -57,7 +58,8 @@ Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.
-inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
+CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");
+inline double layer_edge(const Setup& setup) { return edge * setup.omega_s; }
 
 // A regularized law that is steep is solved by its layer and, around it, by the exact law, as it is wherever the wheel
 // slides. Once solved so, it stays so until an input or the contact changes.

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
@@ -25,14 +26,11 @@ namespace {
 
 using solver::Outcome;
 
-// The most work that one call may do, in internal steps, however long its communication step is: some seconds of
-// computing.
-constexpr long long most_work = 1000000;
-// The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
-constexpr long long work_per_event = 20;
-// Evaluations that count as one internal step, and the work of one of the multibody form, whose system is larger.
-constexpr unsigned evaluations_per_step = 16;
-constexpr long long work_per_multibody_step = 8;
+CONSTANT(long long, most_work, 1000000, "internal steps",
+         "that one call may do, however long its communication step is: some seconds of computing");
+CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a new start, the short steps after it");
+CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
+CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");
 
 bool is_known(const Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
@@ -143,7 +141,7 @@ double stop_of(const Wheel& w, double t) {
 // Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): of a small slip time has too few digits for the
 // rest.
 bool is_about_to_jam(const Wheel& w) {
-  constexpr double little_room = 1e-2;
+  CONSTANT(double, little_room, 1e-2, "1", "WheelSlip.room, below which a step that fails has met the jam");
   if (!w.run.in_force.slides()) return false;
   double y[max_states];
   w.solver.read(w.solver.known_until(), y);

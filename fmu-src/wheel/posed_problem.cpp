@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 
@@ -49,7 +50,9 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const InForce& now = wheel_of(owner).run.in_force;
   const int spin = WHEEL_OMEGA_3;
   const double theta = y[WHEEL_THETA];
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
+  CONSTANT(double, width, 10, "omega_s over sqrt(tolerance)",
+           "error of the spin inside a regularized law, second order");
   const bool multibody = setup.formulation == &wheel_multibody;
   const double slow = share * setup.tolerance;
   const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
@@ -59,7 +62,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
-  const double part = 10 * std::sqrt(tolerance);
+  const double part = width * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
@@ -112,13 +115,15 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
   if (now.inputs.varies) problem.extremes = extremes;
-  problem.near = 0.1;  // of the weight, or rad from lying flat
+  CONSTANT(double, near, 0.1, "weights, or rad from lying flat", "what N or theta may do between two stages of a step");
+  CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
+  problem.near = near;
   problem.longest_step = setup.longest_step;
   const int spin = WHEEL_OMEGA_3;
   if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, solver::Settling::none, slopes_of_spin};
-  if (now.in_layer()) {  // an eighth of it
+  if (now.in_layer()) {
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
-    problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
+    problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
   if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)

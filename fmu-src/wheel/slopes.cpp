@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "constant.hpp"
 #include "exchange.hpp"
 #include "law.hpp"
 
@@ -84,7 +85,7 @@ struct Quotients {
 
   // Marks the derivatives that are exact; true if all are. scale: of the variable.
   bool settle(double scale) {
-    constexpr double relative = 1e-11;
+    CONSTANT(double, relative, 1e-11, "1", "error of a derivative that counts as exact");
     for (std::size_t i = 0; i < count; ++i)
       exact[i] |= error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale);
     return std::all_of(exact.begin(), exact.end(), [](bool of) { return of; });
@@ -96,7 +97,9 @@ struct Quotients {
   //   none of the first steps is possible: false.
   template <class MoveTo>
   bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
-    constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
+    constexpr double finest = std::numeric_limits<double>::epsilon();
+    CONSTANT(double, finest_first, 1e-10, "of the scale",
+             "where no larger step is possible, the quantity is at its limit");
     bool done = false;
     double part = 1e-3;
     while (part > (done ? finest : finest_first) && !settle(scale)) {
