@@ -57,15 +57,14 @@ constexpr Table make_table() {
 }
 constexpr Table radau = make_table();
 
-CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over the tolerance of the whole solution");
+CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over that of the solution, tuned on the wheel's scenes");
 CONSTANT(double, distance, 0.1, "1", "how far the sweeps may be from their limit, over the error of the step");
 CONSTANT(double, error_of_last, 0.005, "1", "error of the polynomial over its last term");
 CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the terms fall less fast");
 CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
 CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
 CONSTANT(double, stretch_to_stop, 0.01, "of the step", "by which it is longer to end at the stop: no tiny step");
-CONSTANT(double, roundings, 2, "roundings of time",
-         "the shortest step: settling states may do in it what they will, the others hardly move");
+CONSTANT(double, roundings, 2, "roundings of time", "the shortest step, in which only states that settle move");
 
 // (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {

@@ -19,11 +19,10 @@ namespace {
 using dormand_prince::stages;
 
 CONSTANT(double, share_of_tolerance, 0.03, "1",
-         "error of a step over the tolerance of the whole solution, tuned on the wheel's scenes");
+         "error of a step over that of the solution, tuned on the wheel's scenes");
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
 CONSTANT(double, reserve, 0.1, "of the size", "a step is shorter than fits its error, so that few are refused");
-CONSTANT(double, stretch, 0.01, "of the step",
-         "by which it is longer to end at the stop: no tiny step, 8 % more error");
+CONSTANT(double, stretch, 0.01, "of the step", "by which it grows to end at the stop: no tiny step, 8 % more error");
 CONSTANT(double, least_error, 1e-6, "1", "smaller errors, as after a step cut short, are mostly rounding");
 
 // The stages that enter a row of the table.
