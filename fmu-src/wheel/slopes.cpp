@@ -239,7 +239,7 @@ void take_along_motion(Wheel& w, Pass& pass) {
 
 }  // namespace
 
-void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
+void read_rates(Wheel& w, Listed outputs, std::size_t count, double* out) {
   Pass pass;
   Reading reading(w);
   bool missing = false;
@@ -255,7 +255,7 @@ void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* ou
   }
 }
 
-bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
+bool add_slopes(Wheel& w, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums) {
   w.reading.reset();
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
