@@ -199,7 +199,7 @@ def test_of_two_scenes_that_look_alike_one_is_drawn_and_its_caption_says_so() ->
     both = [scene(**fall), scene(0.03, **fall | {"theta": fall["theta"] + 1e-3 * np.sin(TIME)})]
     wanted = PICTURES(both, Path("results"))
     assert {tuple(one.name for one in scenes) for _, scenes, *_ in wanted} == {("friction",)}
-    assert "Without rolling friction the diagrams look alike." in caption(wanted[0][1][0])
+    assert "Without rolling resistance the diagrams look alike." in caption(wanted[0][1][0])
     apart = [both[0], scene(0.03, **fall | {"theta": 1.3 * np.cos(TIME / 8)})]
     assert PICTURES(apart, Path("results"))[0][1] == apart
 
@@ -311,8 +311,8 @@ def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_co
     remarks = [panel.draw(style.figure_mm(80, 80).subplots(), one) for one in scenes]
     said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: held"]], 175.0, 7.5))
     assert said.count("Purple at the bottom: it slides") == 1 == said.count("Thick: held")
-    assert said.index("Rolling friction: no transitions") < said.index("Thick") < said.index("Purple")
-    assert "friction: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling friction")
+    assert said.index("Rolling resistance: no transitions") < said.index("Thick") < said.index("Purple")
+    assert "resistance: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling resistance")
     assert not re.search(r": [A-Z]", said)
 
 

@@ -21,11 +21,12 @@ LINKS = ("lychee", "-qq", "--offline", "--include-fragments")  # files and headi
 ELSEWHERE: dict[str, Any] = {"cwd": ROOT / "tools"}  # a module in the current folder would hide a package of its name
 
 
-def deleted(listed: list[str]) -> list[str]:
-    """Folders of the lab that documents name and that are not here: all else does without them."""
+def absent(listed: list[str]) -> list[str]:
+    """Folders that documents name and that may be missing: of the lab, without which all else works, and dist, which
+    a release fills."""
     texts = [(ROOT / name).read_text(encoding="utf-8") for name in listed if name.endswith(".md")]
-    named = {folder for text in texts for folder in re.findall(r"\blab/(\w+)/", text)}
-    return sorted(folder for folder in named if not (ROOT / "lab" / folder).exists())
+    named = {folder for text in texts for folder in re.findall(r"\b(lab/\w+|dist)/", text)}
+    return sorted(folder for folder in named if not (ROOT / folder).exists())
 
 
 def imports(*configurations: str) -> None:
@@ -62,7 +63,7 @@ def main(given: Namespace) -> None:
         check("shellcheck", "-x", *shell)
     on(".github/workflows/*", "check-jsonschema", "--quiet", "--builtin-schema", "vendor.github-workflows")
     on("*", "codespell")
-    on("*.md", *LINKS, *(f"--exclude=/lab/{name}/" for name in deleted(listed)))
+    on("*.md", *LINKS, *(f"--exclude=/{folder}/" for folder in absent(listed)))
     if not given.files:
         lab = ["../lab"] * (ROOT / "lab").exists()
         imports("../pyproject.toml", *(f"{folder}/importlinter.toml" for folder in lab))

@@ -3,7 +3,7 @@
 
     python -m wheelfmu.diagrams.paper FOLDER [argument of ./scripts/run]...
 
-The motions are those of wheel.fmu with these arguments, without (s = 0) and with rolling friction, read densely;
+The motions are those of wheel.fmu with these arguments, without (s = 0) and with rolling resistance, read densely;
 FOLDER/SCENE.error has how far they can be trusted. The paper's two scenes make paper_diagrams, paper_path_and_ground
 and fig_1 ... fig_6; others make diagrams and diagram_NAME_SCENE, with the panels that have content, and leave those of
 the paper in place. Of two scenes that look alike one is drawn. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad,
@@ -194,7 +194,7 @@ def start_of(scene: Scene) -> str:
 
 def title_of(scene: Scene) -> str:
     s = scene.value("s")
-    return rf"Rolling friction, $s = {short(s)}$ m" if s > 0 else r"No rolling friction, $s = 0$"
+    return rf"Rolling resistance, $s = {short(s)}$ m" if s > 0 else r"No rolling resistance, $s = 0$"
 
 
 def fate_of(scene: Scene) -> list[str]:
@@ -333,7 +333,7 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
     if not paper and len(scenes) == 2 and alike(*scenes):
-        scenes = [replace(scenes[1], alone="without rolling friction the diagrams look alike")]
+        scenes = [replace(scenes[1], alone="without rolling resistance the diagrams look alike")]
     every = PAPERS if paper else panels_of(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": every}
     wanted: list[tuple] = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
