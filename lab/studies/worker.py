@@ -26,6 +26,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2FMUstate
 from numpy.typing import NDArray
 
+from wheelfmu.fmu import values
 from wheelfmu.fmu.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
 from wheelfmu.fmu.values import Fault
 
@@ -234,7 +235,8 @@ def pack(fmu: str | Path, path: Path) -> Path:
     shutil.copy(fmu, path)
     with zipfile.ZipFile(path, "a") as package:
         package.write(library, MARCH)
-        package.writestr("wheelfmu/__init__.py", JOINED)
-        for source in [*here.glob("*.py"), *here.with_name("fmu").glob("*.py")]:
-            package.write(source, f"wheelfmu/{source.parent.name}/{source.name}")
+        for name, folder in {"lab/studies": here, "wheelfmu/fmu": Path(values.__file__).parent}.items():
+            package.writestr(f"{name.partition('/')[0]}/__init__.py", JOINED)
+            for source in folder.glob("*.py"):
+                package.write(source, f"{name}/{source.name}")
     return path
