@@ -1,16 +1,151 @@
-"""python3 tools COMMAND [WORD...]: answers --help and typing errors, and writes to file descriptor 3, if it is open, a
-full stop and the words of set-up that the command needs. By the standard library alone, before anything is installed.
+"""python3 tools COMMAND [WORD...]: the set-up of every command. It answers --help and typing errors, installs what the
+command needs, Debian packages (packages) and in .venv Python packages (pyproject.toml, requirements.lock), and gives its
+place to the command. By the standard library alone.
 """
 
+import fcntl
 import os
+import re
+import shutil
+import signal
+import subprocess
 import sys
-from contextlib import suppress
-from pathlib import Path
+import tomllib
+from glob import glob
+from importlib.util import find_spec
+from subprocess import DEVNULL
+from typing import Any
 
-from wheelfmu.__main__ import needs
+from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault
 
-sys.path.append(str(Path(__file__).resolve().parents[1]))  # of the lab's commands; .venv has it once it is made
-words = needs(*sys.argv[1:])
-if words is not None:
-    with suppress(OSError):
-        os.write(3, " ".join((".", *words)).encode())
+LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
+# The words that a word contains.
+PARTS = {
+    "all": ["test", "check", "tidy", "asan", "browser", "release", "studies-tests", *LAB],
+    "asan": ["tidy"],
+    "tidy": ["check"],
+}
+VENV = ROOT / ".venv"
+PYTHON = VENV / "bin" / "python"
+RENEWAL = "Delete it (rm -r .venv), and the next command makes it anew."
+
+
+def run(*words: object, **how: Any) -> int:
+    """The exit status of a program, which keeps the lock until it ends."""
+    return subprocess.run([str(word) for word in words], cwd=ROOT, close_fds=False, check=False, **how).returncode
+
+
+def check(*words: object, **how: Any) -> None:
+    if code := run(*words, **how):
+        sys.exit(1 if code < 0 else code)
+
+
+def there(sign: str) -> bool:
+    if sign.startswith("$"):
+        return bool(os.environ.get(sign[1:]))
+    if sign.startswith("import:"):
+        return find_spec(sign[7:]) is not None
+    return bool(glob(sign, root_dir=ROOT)) if "/" in sign else shutil.which(sign) is not None
+
+
+def debian(words: list[str]) -> None:
+    """Installs the packages that are missing."""
+    rows = [line.split() for line in (ROOT / "tools" / "packages").read_text().splitlines() if line[0] != "#"]
+    if missing := [package for word, package, *signs in rows if word in words and not any(map(there, signs))]:
+        check("bash", ROOT / "tools" / "debian", *missing)
+
+
+def environment() -> None:
+    """.venv. Its programs contain its path and use one Python; it is never emptied: one that does not fit is refused."""
+    if not os.path.lexists(VENV):
+        try:
+            check(sys.executable, "-I", "-m", "venv", "--without-pip", VENV)
+        except BaseException:
+            shutil.rmtree(VENV, ignore_errors=True)
+            raise
+    ask = "import sys; print('Python %d.%d' % sys.version_info[:2])"
+    try:
+        python = subprocess.check_output([PYTHON, "-I", "-c", ask], stderr=DEVNULL, text=True).strip()
+    except (OSError, subprocess.CalledProcessError):
+        raise Fault(f".venv has no Python that runs. {RENEWAL}") from None
+    here, place = f"{ROOT} {python}", VENV / "place"
+    if not place.exists():
+        place.write_text(f"{here}\n", encoding="utf-8")
+    elif not (made := place.read_text(encoding="utf-8").strip()).startswith(here):
+        raise Fault(f".venv was made as {made}, and this is {here}. {RENEWAL}")
+
+
+def pip(*words: object, **how: Any) -> int:
+    return run(PYTHON, "-I", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *words, **how)
+
+
+def packages(words: list[str]) -> None:
+    """The packages of the groups that have these names, in .venv."""
+    (site,) = VENV.glob("lib/python3*/site-packages")
+    # The packages wheelfmu and lab; relative: under the locale C no other letters than ASCII are read there.
+    (site / "wheelfmu.pth").write_text("../../../../tools\n../../../../.\n")
+    # A package that a killed set-up had begun is installed again: INSTALLER is written last.
+    for info in site.glob("*.dist-info"):
+        if not (info / "INSTALLER").exists():
+            shutil.rmtree(info)
+    if not (VENV / "bin" / "pip").exists():
+        check(PYTHON, "-I", "-m", "ensurepip", "--upgrade", "--default-pip", stdout=DEVNULL)
+    lock, whole = ROOT / "requirements.lock", VENV / "installed.lock"  # the latter if pip has installed all of it
+    if whole.exists() and whole.read_bytes() == lock.read_bytes():
+        return
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"]
+    (installer,) = groups["installer"]
+    uv = VENV / "bin" / "uv"
+    if not [*site.glob(f"{installer.replace('==', '-')}.dist-info")]:
+        pip(installer, stderr=DEVNULL)
+    given = [part for word in words if word in groups for part in ("--group", word)]
+    sync = [uv, "--quiet", "--no-progress", "--no-python-downloads", "pip", "install", "--python", PYTHON]
+    sync += ["-r", "pyproject.toml", *given, "--constraint", lock]
+    if uv.exists() and run(*sync, "--offline", stderr=DEVNULL) == 0:
+        return
+    print("Installing Python packages into .venv", flush=True)
+    # By pip where uv cannot be installed, or does not reach the index that pip is configured for.
+    if not uv.exists() or run(*sync):
+        (VENV / "without_uv.txt").write_text(re.sub(r"(?m)^uv==(.*\\\n)*.*\n", "", lock.read_text()))
+        if code := pip("--no-deps", "-r", VENV / "without_uv.txt"):
+            sys.exit(code)
+        shutil.copy(lock, whole)
+
+
+def install(words: list[str]) -> None:
+    """One set-up at a time in this checkout; the others wait until it ends."""
+    (ROOT / "build").mkdir(exist_ok=True)
+    with (ROOT / "build" / "setup.lock").open("w") as file:
+        os.set_inheritable(file.fileno(), True)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print("Waiting for another process to finish its set-up.", file=sys.stderr)
+            fcntl.flock(file, fcntl.LOCK_EX)
+        debian(words)
+        environment()
+        packages(words)
+
+
+def main(name: str, *typed: str) -> None:
+    from wheelfmu.__main__ import needs
+
+    sys.path.append(str(ROOT))  # of the lab's commands; .venv has it once it is made
+    asked = needs(name, *typed)
+    if asked is None:
+        return
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends set-up and the programs that it has started
+    words = [".", *asked, *(["lesson"] if "lesson" in LAB else [])]  # for the 3D page of ./scripts/run
+    for word in words:
+        words += [part for part in PARTS.get(word, ()) if part not in words]
+    with worded(name, 1):
+        install(words)
+    os.environ["PATH"] = f"{VENV / 'bin'}:{os.environ['PATH']}"
+    os.execv(PYTHON, [str(PYTHON), "-P", "-m", "wheelfmu", name, *typed])
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -28,6 +28,7 @@ from wheelfmu.fmu.values import (
     wheels,
 )
 
+INTERRUPTED = "stopped; the same command continues from here."
 EXAMPLES = Path(__file__).parent / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 SHOWN = """examples:

@@ -3,6 +3,7 @@
 Standard library alone.
 """
 
+import errno
 import os
 import shutil
 import sys
@@ -10,12 +11,53 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from hashlib import sha256
 from pathlib import Path
 
 from wheelfmu.fmu.values import Fault
 
 BEGIN = time.monotonic()
+# Of a disk or a place, not of a program: full, out of order, another user's, something else.
+OF_PLACES = (
+    "EACCES",
+    "EPERM",
+    "EROFS",
+    "ENOSPC",
+    "EDQUOT",
+    "EFBIG",
+    "EIO",
+    "EEXIST",
+    "EISDIR",
+    "ENOTDIR",
+    "ENAMETOOLONG",
+)
+
+
+@contextmanager
+def worded(name: str, status: int = 2) -> Iterator[None]:
+    """A Fault, or an error of a disk or a place, ends the program `name` with one sentence."""
+    try:
+        yield
+        sys.stdout.flush()
+        return
+    except Fault as fault:
+        text = str(fault)
+    except OSError as fault:
+        if errno.errorcode.get(fault.errno or 0) not in OF_PLACES:
+            raise
+        text = f"{fault.filename or 'the output'}: {fault.strerror}{owner(fault)}."
+        if not fault.filename:  # what is not printed yet is not tried again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    print(f"{name}: {text}", file=sys.stderr)
+    sys.exit(status)
+
+
+def owner(fault: OSError) -> str:
+    """Of the place to which access was denied."""
+    if fault.errno != errno.EACCES or not fault.filename:
+        return ""
+    path = Path(os.fsdecode(fault.filename)).absolute()
+    place = next(one for one in (path, *path.parents) if one.exists())
+    return f"; {place} belongs to {place.owner()}"
 
 
 def check(
@@ -34,6 +76,8 @@ def check(
 @contextmanager
 def fresh(path: Path) -> Iterator[Path]:
     """A path to write to, beside `path`; what is written moves into its place if no error is raised."""
+    if path.is_dir():
+        raise Fault(f"{path} is a folder, and a file is to be written there: rename or delete the folder.")
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_name(f".{os.getpid()}.{path.name}")
     try:
@@ -45,17 +89,21 @@ def fresh(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def alone(place: Path) -> Iterator[None]:
-    """One process of this machine at a time uses a place; the others wait."""
-    import fcntl
+    """One process at a time uses a place; the others wait. The lock is beside it, the same for every user and container."""
+    from filelock import FileLock, Timeout
 
-    name = sha256(str(place.resolve()).encode()).hexdigest()[:16]
-    with (Path(tempfile.gettempdir()) / f"wheel-{os.getuid()}-{name}.lock").open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
-            fcntl.flock(file, fcntl.LOCK_EX)
+    place = place.resolve()
+    place.parent.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(place.with_name(f".{place.name}.lock"), mode=0o666)
+    try:
+        lock.acquire(blocking=False)
+    except Timeout:
+        print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
+        lock.acquire()
+    try:
         yield
+    finally:
+        lock.release()
 
 
 @contextmanager
