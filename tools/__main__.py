@@ -1,6 +1,6 @@
 """python3 tools COMMAND [WORD...]: the set-up of every command. It answers --help and typing errors, installs what the
-command needs, Debian packages (packages) and in .venv Python packages (pyproject.toml, requirements.lock), and gives its
-place to the command. By the standard library alone.
+command needs, Debian packages (packages) and Python packages in .venv (requirements.lock), and gives its place to the
+command. By the standard library alone.
 """
 
 import fcntl
@@ -11,8 +11,8 @@ import signal
 import subprocess
 import sys
 import tomllib
-from glob import glob
 from importlib.util import find_spec
+from pathlib import Path
 from subprocess import DEVNULL
 from typing import Any
 
@@ -32,14 +32,10 @@ PYTHON = VENV / "bin" / "python"
 RENEWAL = "Delete it (rm -r .venv), and the next command makes it anew."
 
 
-def run(*words: object, **how: Any) -> int:
-    """The exit status of a program, which keeps the lock until it ends."""
-    return subprocess.run([str(word) for word in words], cwd=ROOT, close_fds=False, check=False, **how).returncode
-
-
-def check(*words: object, **how: Any) -> None:
-    if code := run(*words, **how):
-        sys.exit(1 if code < 0 else code)
+def run(*words: object, may_fail: bool = False, **how: Any) -> int:
+    """The exit status of a program, which keeps the lock until it ends; a failure ends this one, too, unless it may."""
+    code = subprocess.run([str(word) for word in words], cwd=ROOT, close_fds=False, check=False, **how).returncode
+    return code if may_fail or not code else sys.exit(code if code > 0 else 128 - code)
 
 
 def there(sign: str) -> bool:
@@ -47,24 +43,23 @@ def there(sign: str) -> bool:
         return bool(os.environ.get(sign[1:]))
     if sign.startswith("import:"):
         return find_spec(sign[7:]) is not None
-    return bool(glob(sign, root_dir=ROOT)) if "/" in sign else shutil.which(sign) is not None
+    if "/" in sign:
+        return any((Path("/") if sign[0] == "/" else ROOT).glob(sign.lstrip("/")))
+    return shutil.which(sign) is not None
 
 
 def debian(words: list[str]) -> None:
     """Installs the packages that are missing."""
     rows = [line.split() for line in (ROOT / "tools" / "packages").read_text().splitlines() if line[0] != "#"]
     if missing := [package for word, package, *signs in rows if word in words and not any(map(there, signs))]:
-        check("bash", ROOT / "tools" / "debian", *missing)
+        run("bash", ROOT / "tools" / "debian", *missing)
 
 
 def environment() -> None:
-    """.venv. Its programs contain its path and use one Python; it is never emptied: one that does not fit is refused."""
-    if not os.path.lexists(VENV):
-        try:
-            check(sys.executable, "-I", "-m", "venv", "--without-pip", VENV)
-        except BaseException:
-            shutil.rmtree(VENV, ignore_errors=True)
-            raise
+    """.venv, whose programs contain its path and use one Python. It is never emptied: one that does not fit is refused."""
+    if not os.path.lexists(VENV) and run(sys.executable, *"-I -m venv --without-pip .venv".split(), may_fail=True):
+        shutil.rmtree(VENV, ignore_errors=True)  # what a full disk has left
+        sys.exit(1)
     ask = "import sys; print('Python %d.%d' % sys.version_info[:2])"
     try:
         python = subprocess.check_output([PYTHON, "-I", "-c", ask], stderr=DEVNULL, text=True).strip()
@@ -77,40 +72,32 @@ def environment() -> None:
         raise Fault(f".venv was made as {made}, and this is {here}. {RENEWAL}")
 
 
-def pip(*words: object, **how: Any) -> int:
-    return run(PYTHON, "-I", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *words, **how)
-
-
 def packages(words: list[str]) -> None:
     """The packages of the groups that have these names, in .venv."""
     (site,) = VENV.glob("lib/python3*/site-packages")
     # The packages wheelfmu and lab; relative: under the locale C no other letters than ASCII are read there.
     (site / "wheelfmu.pth").write_text("../../../../tools\n../../../../.\n")
     # A package that a killed set-up had begun is installed again: INSTALLER is written last.
-    for info in site.glob("*.dist-info"):
-        if not (info / "INSTALLER").exists():
-            shutil.rmtree(info)
+    for info in [info for info in site.glob("*.dist-info") if not (info / "INSTALLER").exists()]:
+        shutil.rmtree(info)
     if not (VENV / "bin" / "pip").exists():
-        check(PYTHON, "-I", "-m", "ensurepip", "--upgrade", "--default-pip", stdout=DEVNULL)
-    lock, whole = ROOT / "requirements.lock", VENV / "installed.lock"  # the latter if pip has installed all of it
-    if whole.exists() and whole.read_bytes() == lock.read_bytes():
+        run(PYTHON, "-I", "-m", "ensurepip", "--upgrade", "--default-pip", stdout=DEVNULL)
+    lock, whole, uv = ROOT / "requirements.lock", VENV / "installed.lock", VENV / "bin" / "uv"
+    if whole.exists() and whole.read_bytes() == lock.read_bytes():  # pip has installed all of it
         return
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"]
-    (installer,) = groups["installer"]
-    uv = VENV / "bin" / "uv"
-    if not [*site.glob(f"{installer.replace('==', '-')}.dist-info")]:
-        pip(installer, stderr=DEVNULL)
-    given = [part for word in words if word in groups for part in ("--group", word)]
-    sync = [uv, "--quiet", "--no-progress", "--no-python-downloads", "pip", "install", "--python", PYTHON]
-    sync += ["-r", "pyproject.toml", *given, "--constraint", lock]
-    if uv.exists() and run(*sync, "--offline", stderr=DEVNULL) == 0:
+    pip = [PYTHON, *"-I -m pip install --quiet --disable-pip-version-check".split()]
+    if not [*site.glob(f"{groups['installer'][0].replace('==', '-')}.dist-info")]:
+        run(*pip, *groups["installer"], may_fail=True, stderr=DEVNULL)
+    sync = [uv, *"--quiet --no-progress --no-python-downloads pip install -r pyproject.toml --python".split(), PYTHON]
+    sync += ["--constraint", lock, *(f"--group={word}" for word in words if word in groups)]
+    if uv.exists() and not run(*sync, "--offline", may_fail=True, stderr=DEVNULL):
         return
     print("Installing Python packages into .venv", flush=True)
     # By pip where uv cannot be installed, or does not reach the index that pip is configured for.
-    if not uv.exists() or run(*sync):
+    if not uv.exists() or run(*sync, may_fail=True):
         (VENV / "without_uv.txt").write_text(re.sub(r"(?m)^uv==(.*\\\n)*.*\n", "", lock.read_text()))
-        if code := pip("--no-deps", "-r", VENV / "without_uv.txt"):
-            sys.exit(code)
+        run(*pip, "--no-deps", "-r", VENV / "without_uv.txt")
         shutil.copy(lock, whole)
 
 
@@ -134,8 +121,6 @@ def main(name: str, *typed: str) -> None:
 
     sys.path.append(str(ROOT))  # of the lab's commands; .venv has it once it is made
     asked = needs(name, *typed)
-    if asked is None:
-        return
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends set-up and the programs that it has started
     words = [".", *asked, *(["lesson"] if "lesson" in LAB else [])]  # for the 3D page of ./scripts/run

@@ -27,7 +27,7 @@ def read(name: str, module: ModuleType, words: list[str]) -> Any:
     if own := getattr(module, "reads", None):
         plain = [word for word in words if word not in ("-h", "--help")]
         if len(plain) < len(words) and hasattr(module, "usage"):
-            print(module.usage(plain), flush=True)
+            print(module.usage(plain))
             sys.exit()
         return own(words)
     form = {"description": module.__doc__, "formatter_class": RawDescriptionHelpFormatter}
@@ -37,20 +37,12 @@ def read(name: str, module: ModuleType, words: list[str]) -> Any:
     return parser.parse_args(words)
 
 
-def needs(name: str, *words: str) -> tuple[str, ...] | None:
-    """What a command with these words needs of set-up; none where its help was printed."""
-    try:
-        with worded(name):
-            module = module_of(name)
-            given = read(name, module, [*words])
-    except BrokenPipeError:  # of a reader of the help, such as head, which has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return None
-    except SystemExit as end:
-        if end.code:
-            raise
-        return None
-    return module.needs(given) if hasattr(module, "needs") else getattr(module, "NEEDS", ())
+def needs(name: str, *words: str) -> tuple[str, ...] | list[str]:
+    """What a command with these words needs of set-up; help ends the program."""
+    with worded(name):
+        module = module_of(name)
+        given = read(name, module, [*words])
+        return module.needs(given) if hasattr(module, "needs") else getattr(module, "NEEDS", ())
 
 
 class Stop:
@@ -85,9 +77,6 @@ def main(name: str, *words: str) -> int:
     except KeyboardInterrupt:
         print(f"\n{name}: {getattr(module, 'INTERRUPTED', 'interrupted.')}", file=sys.stderr)
         return 128 + stop.number
-    except BrokenPipeError:  # of a reader, such as head, which has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 128 + signal.SIGPIPE
     except processes.Failed as failed:
         return failed.status
     finally:

@@ -63,7 +63,7 @@ def side_by_side(*programs: list[str], **how: Any) -> None:
 
 
 def running() -> list["Process"]:
-    """Descendants that run; not Python's tracker of shared resources, which ignores signals and ends with this process."""
+    """Descendants that run; not Python's tracker of resources, which ignores signals and ends with this process."""
     import psutil
 
     found = []

@@ -6,6 +6,7 @@ Standard library alone.
 import errno
 import os
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -34,30 +35,25 @@ OF_PLACES = (
 
 @contextmanager
 def worded(name: str, status: int = 2) -> Iterator[None]:
-    """A Fault, or an error of a disk or a place, ends the program `name` with one sentence."""
+    """A Fault, or an error of a disk or a place, ends the program `name` with one sentence, the end of its reader with
+    none."""
     try:
-        yield
-        sys.stdout.flush()
-        return
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
     except Fault as fault:
-        text = str(fault)
+        print(f"{name}: {fault}", file=sys.stderr)
+        sys.exit(status)
     except OSError as fault:
-        if errno.errorcode.get(fault.errno or 0) not in OF_PLACES:
+        kind = errno.errorcode.get(fault.errno or 0)
+        if kind in OF_PLACES:
+            print(f"{name}: {fault.filename or 'the output'}: {fault.strerror}.", file=sys.stderr)
+        elif kind != "EPIPE":
             raise
-        text = f"{fault.filename or 'the output'}: {fault.strerror}{owner(fault)}."
         if not fault.filename:  # what is not printed yet is not tried again
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    print(f"{name}: {text}", file=sys.stderr)
-    sys.exit(status)
-
-
-def owner(fault: OSError) -> str:
-    """Of the place to which access was denied."""
-    if fault.errno != errno.EACCES or not fault.filename:
-        return ""
-    path = Path(os.fsdecode(fault.filename)).absolute()
-    place = next(one for one in (path, *path.parents) if one.exists())
-    return f"; {place} belongs to {place.owner()}"
+        sys.exit(status if kind != "EPIPE" else 128 + signal.SIGPIPE)
 
 
 def check(
@@ -89,7 +85,7 @@ def fresh(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def alone(place: Path) -> Iterator[None]:
-    """One process at a time uses a place; the others wait. The lock is beside it, the same for every user and container."""
+    """One process at a time uses a place; the others wait. The lock is beside it, the same for all users."""
     from filelock import FileLock, Timeout
 
     place = place.resolve()
