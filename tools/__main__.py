@@ -24,7 +24,7 @@ LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 # The words that a word contains.
 PARTS = {
     "all": ["test", "check", "tidy", "asan", "browser", "release", "studies-tests", *LAB],
-    "asan": ["tidy"],
+    "asan": ["tidy", "check"],
     "tidy": ["check"],
 }
 VENV = ROOT / ".venv"
@@ -48,7 +48,7 @@ def there(sign: str) -> bool:
     return shutil.which(sign) is not None
 
 
-def debian(words: list[str]) -> None:
+def debian(words: set[str]) -> None:
     """Installs the packages that are missing."""
     rows = [line.split() for line in (ROOT / "tools" / "packages").read_text().splitlines() if line[0] != "#"]
     if missing := [package for word, package, *signs in rows if word in words and not any(map(there, signs))]:
@@ -56,10 +56,9 @@ def debian(words: list[str]) -> None:
 
 
 def environment() -> None:
-    """.venv, whose programs contain its path and use one Python. It is never emptied: one that does not fit is refused."""
-    if not os.path.lexists(VENV) and run(sys.executable, *"-I -m venv --without-pip .venv".split(), may_fail=True):
-        shutil.rmtree(VENV, ignore_errors=True)  # what a full disk has left
-        sys.exit(1)
+    """.venv, whose programs contain its path and use one Python. Never emptied: one that does not fit is refused."""
+    if not (VENV / "bin" / "pip").exists():  # written last
+        run(sys.executable, "-I", "-m", "venv", VENV)
     ask = "import sys; print('Python %d.%d' % sys.version_info[:2])"
     try:
         python = subprocess.check_output([PYTHON, "-I", "-c", ask], stderr=DEVNULL, text=True).strip()
@@ -69,10 +68,10 @@ def environment() -> None:
     if not place.exists():
         place.write_text(f"{here}\n", encoding="utf-8")
     elif not (made := place.read_text(encoding="utf-8").strip()).startswith(here):
-        raise Fault(f".venv was made as {made}, and this is {here}. {RENEWAL}")
+        raise Fault(f".venv was made for {made}, and this is {here}. {RENEWAL}")
 
 
-def packages(words: list[str]) -> None:
+def packages(words: set[str]) -> None:
     """The packages of the groups that have these names, in .venv."""
     (site,) = VENV.glob("lib/python3*/site-packages")
     # The packages wheelfmu and lab; relative: under the locale C no other letters than ASCII are read there.
@@ -80,17 +79,15 @@ def packages(words: list[str]) -> None:
     # A package that a killed set-up had begun is installed again: INSTALLER is written last.
     for info in [info for info in site.glob("*.dist-info") if not (info / "INSTALLER").exists()]:
         shutil.rmtree(info)
-    if not (VENV / "bin" / "pip").exists():
-        run(PYTHON, "-I", "-m", "ensurepip", "--upgrade", "--default-pip", stdout=DEVNULL)
     lock, whole, uv = ROOT / "requirements.lock", VENV / "installed.lock", VENV / "bin" / "uv"
     if whole.exists() and whole.read_bytes() == lock.read_bytes():  # pip has installed all of it
         return
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"]
-    pip = [PYTHON, *"-I -m pip install --quiet --disable-pip-version-check".split()]
-    if not [*site.glob(f"{groups['installer'][0].replace('==', '-')}.dist-info")]:
+    pip = [PYTHON, "-I", "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    if not uv.exists():
         run(*pip, *groups["installer"], may_fail=True, stderr=DEVNULL)
-    sync = [uv, *"--quiet --no-progress --no-python-downloads pip install -r pyproject.toml --python".split(), PYTHON]
-    sync += ["--constraint", lock, *(f"--group={word}" for word in words if word in groups)]
+    sync = [uv, "--quiet", "--no-progress", "--no-python-downloads", "pip", "install", "--python", PYTHON]
+    sync += ["-r", "pyproject.toml", "--constraint", lock, *(f"--group={word}" for word in words & groups.keys())]
     if uv.exists() and not run(*sync, "--offline", may_fail=True, stderr=DEVNULL):
         return
     print("Installing Python packages into .venv", flush=True)
@@ -101,7 +98,7 @@ def packages(words: list[str]) -> None:
         shutil.copy(lock, whole)
 
 
-def install(words: list[str]) -> None:
+def install(words: set[str]) -> None:
     """One set-up at a time in this checkout; the others wait until it ends."""
     (ROOT / "build").mkdir(exist_ok=True)
     with (ROOT / "build" / "setup.lock").open("w") as file:
@@ -123,11 +120,9 @@ def main(name: str, *typed: str) -> None:
     asked = needs(name, *typed)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends set-up and the programs that it has started
-    words = [".", *asked, *(["lesson"] if "lesson" in LAB else [])]  # for the 3D page of ./scripts/run
-    for word in words:
-        words += [part for part in PARTS.get(word, ()) if part not in words]
+    words = {".", "installer", *asked, *(["lesson"] if "lesson" in LAB else [])}  # for the 3D page of ./scripts/run
     with worded(name, 1):
-        install(words)
+        install(words.union(*(PARTS.get(word, ()) for word in words)))
     os.environ["PATH"] = f"{VENV / 'bin'}:{os.environ['PATH']}"
     os.execv(PYTHON, [str(PYTHON), "-P", "-m", "wheelfmu", name, *typed])
 

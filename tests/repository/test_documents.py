@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from support.checkout import copy_checkout
+from support.checkout import READS, copy_checkout
 
 from wheelfmu.commands import MODULES
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
@@ -133,7 +133,7 @@ def printed(text: str) -> set[tuple[str, ...]]:
 
 def accepted(name: str, *arguments: str) -> bool:
     """Whether the command takes the arguments."""
-    reads = run(sys.executable, "-S", "tools", name, *arguments) if arguments else None
+    reads = run(*READS, name, *arguments) if arguments else None
     return (ROOT / "scripts" / name).is_file() and not (reads and reads.returncode)
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from support.checkout import READS
 
 from wheelfmu.fmu.csv_file import read_table
 from wheelfmu.fmu.paths import ROOT
@@ -129,8 +130,8 @@ TYPED += [(words, f"study {line}") for line, words in OF_STUDY.items()]
 
 def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """What the command's reader, by the standard library alone, makes of a line."""
-    reads = [sys.executable, "-S", "-B", str(ROOT / "tools"), *line.split()]
-    return subprocess.run(reads, cwd=folder, env=os.environ | environment, capture_output=True, text=True)
+    how = {"cwd": folder, "env": os.environ | environment, "capture_output": True, "text": True}
+    return subprocess.run([*READS, *line.split()], **how)
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from secrets import token_hex
 
 from wheelfmu.fmu.values import Fault
 
@@ -51,9 +52,19 @@ def worded(name: str, status: int = 2) -> Iterator[None]:
             print(f"{name}: {fault.filename or 'the output'}: {fault.strerror}.", file=sys.stderr)
         elif kind != "EPIPE":
             raise
-        if not fault.filename:  # what is not printed yet is not tried again
+        if kind == "EPIPE" or not fault.filename:  # what is not printed yet is not tried again
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(status if kind != "EPIPE" else 128 + signal.SIGPIPE)
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """An error of a disk that is full, which has no name, gets that of the file."""
+    try:
+        yield
+    except OSError as fault:
+        fault.filename = fault.filename or str(path)
+        raise
 
 
 def check(
@@ -75,10 +86,11 @@ def fresh(path: Path) -> Iterator[Path]:
     if path.is_dir():
         raise Fault(f"{path} is a folder, and a file is to be written there: rename or delete the folder.")
     path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{os.getpid()}.{path.name}")
+    new = path.with_name(f".{token_hex(4)}.{path.name}")  # of no other process, in another container either
     try:
-        yield new
-        new.replace(path)
+        with named(path):
+            yield new
+            new.replace(path)
     finally:
         new.unlink(missing_ok=True)
 
@@ -109,7 +121,7 @@ def new_folder(place: Path) -> Iterator[Path]:
     with alone(place):
         for left in place.glob(".new-*"):
             shutil.rmtree(left)
-        with tempfile.TemporaryDirectory(dir=place, prefix=".new-") as new:
+        with named(place), tempfile.TemporaryDirectory(dir=place, prefix=".new-") as new:
             yield Path(new)
 
 
