@@ -19,8 +19,8 @@ docs/variables.md can be given, each once. A warning names moments of inertia th
 has. The last lines state the error of both runs, judged by another solver (docs/recipes.md).
 
 The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
-packages into .venv, and compiles. cargo-web is among the packages because cargo downloads the pinned source of
-SUNDIALS, the solver.
+packages into .venv, and compiles. cargo is among the packages because it downloads the pinned source of SUNDIALS, the
+solver.
 
 With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r); all but the last can be
 given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m, Y_O = 0, whatever its
