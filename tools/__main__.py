@@ -23,7 +23,7 @@ from wheelfmu.fmu.values import Fault
 LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 # The words that a word contains.
 PARTS = {
-    "all": ["test", "check", "tidy", "asan", "browser", "release", "studies-tests", *LAB],
+    "all": ["test", "check", "tidy", "asan", "browser", "release", *LAB],
     "asan": ["tidy", "check"],
     "tidy": ["check"],
 }

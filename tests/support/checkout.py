@@ -1,14 +1,9 @@
-"""A copy of the project, as a fresh checkout has it; and the reader of what is typed behind a command."""
+"""A copy of the project, as a fresh checkout has it."""
 
 import subprocess
-import sys
 from pathlib import Path
 
 from wheelfmu.fmu.paths import ROOT
-
-# By the standard library alone; nothing is installed or carried out.
-READ = f"import sys; sys.path[:0] = {[str(ROOT / 'tools'), str(ROOT)]}; from wheelfmu.__main__ import needs; "
-READS = [sys.executable, "-S", "-B", "-P", "-c", READ + "needs(*sys.argv[1:])"]
 
 
 def copy_checkout(place: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.checkout import READS
+from support.typed import asked
 
 from lab.vehicles import example, options
 from lab.vehicles.master import Component, loaded
@@ -34,7 +34,7 @@ PACKAGES = PACKAGE.findall(TEXT)
 
 def reads(line: str) -> subprocess.CompletedProcess:
     """The command line as it is checked before anything is built, by the standard library alone."""
-    return subprocess.run([*READS, "example", *line.split()], capture_output=True, text=True)
+    return asked(ROOT, f"example {line}")
 
 
 @pytest.mark.parametrize("case", [case for case in CASES.values() if case["status"] == "2"], ids=lambda of: of["line"])
