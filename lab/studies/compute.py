@@ -155,7 +155,8 @@ def finished(client: Client, submit: Callable, regions: list[Region]) -> Iterato
     done = as_completed(loop=client.loop)
 
     def fill_up() -> None:
-        for region in islice(left, max(0, 2 * len(client.nthreads()) - len(sent))):
+        many = max(1, 2 * len(client.nthreads()))  # one where every worker starts again
+        for region in islice(left, max(0, many - len(sent))):
             future = submit(region)
             sent[future] = region
             done.add(future)
