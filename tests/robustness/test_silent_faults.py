@@ -154,3 +154,13 @@ def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel
         w = wheel().start(keep_contact=True, method=method, **fast)
         assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
         assert instants_of_pulls(w) == [0.0]
+
+
+def test_each_of_two_failures_has_its_own_message(wheel):
+    """Of two runs of one instance: too many turns, then a force that no step follows."""
+    w = wheel()
+    before = w.start().serialized()
+    for _ in range(2):
+        assert w.back(before).step(1e14) == ERROR and "the angle has too few digits" in w.said()
+        assert w.back(before).put(M_3=1e280).step(0.1) == ERROR
+        assert "too few digits" not in w.said()
