@@ -167,7 +167,7 @@ def test_rates_that_a_ramp_has_brought_to_zero_stay_there_without_acceleration(
         w.start(**LEANS, **road, formulation=formulation)
         w.put(psi_dot_guide=0.5, theta_dot_guide=-0.25)
         assert w.get("psi_ddot", "theta_ddot") == [0.0, 0.0]
-        w.give({"psi_dot_guide": (0.5, -4.0), "theta_dot_guide": (-0.25, 2.0)})
+        assert w.set_input_derivatives(RATES, [[-4.0, 2.0]]) == OK
         within(absolute_error(w.get(*inertial), [-4.0, 2.0, 0.5, -0.25]), 1e-13, "ramp, rad/s2 and rad/s")
         within(absolute_error(w.by(0.125).get(*inertial), [-4.0, 2.0, 0.0, 0.0]), 1e-13, "its end, rad/s2 and rad/s")
         w.put(psi_dot_guide=0.0, theta_dot_guide=0.0)

@@ -438,3 +438,18 @@ def test_a_reading_has_the_law_before_an_input_until_the_event_mode_decides_and_
         wheel.decide()
         tau = -0.03 * WEIGHT
         assert wheel.get(*names) == pytest.approx([1, (51.0 + tau) / (1.8 + 20 * 0.35**2), tau])
+
+
+def test_each_question_of_a_solver_is_counted_when_it_is_asked(library: Library) -> None:
+    with at_odd(library, s=0.02) as wheel:
+        for ask, counted in ((wheel.derivatives, [1, 0]), (wheel.indicators, [0, 1]), (wheel.wants_event, [0, 1])):
+            before = wheel.get("n_rhs", "n_roots")
+            ask()
+            assert np.subtract(wheel.get("n_rhs", "n_roots"), before).tolist() == counted
+
+
+def test_a_brake_that_is_not_in_use_has_no_moment_until_an_event_gives_it_a_law(library: Library) -> None:
+    with exchange(library) as wheel:
+        assert not wheel.jacobian(["tau", "tau_brake", "omega_z_dot"], ["M_brake"]).any()
+        wheel.put(M_brake=1.0).event()
+        assert wheel.jacobian(["tau_brake"], ["M_brake"]) == pytest.approx(1)  # omega_z < 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 
-from wheelfmu.fmu.driver import ERROR, OK
+from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
 from wheelfmu.truth.closed_forms import rolling_inertia
 from wheelfmu.truth.scenes import PAPER, PULLED
 from wheelfmu.truth.schedule import play
@@ -164,3 +164,13 @@ def test_each_of_two_failures_has_its_own_message(wheel):
         assert w.back(before).step(1e14) == ERROR and "the angle has too few digits" in w.said()
         assert w.back(before).put(M_3=1e280).step(0.1) == ERROR
         assert "too few digits" not in w.said()
+
+
+def test_a_step_that_fails_counts_nothing_and_the_counts_stay_when_the_run_is_closed(wheel):
+    for values in ({}, {"s": 0.03}, {"s": 0.03, "friction_law": 2, "omega_s": 1e-6}):
+        w = wheel().start(**values).to(0.5)
+        counts = w.get(*COUNTERS)
+        before = w.serialized()
+        assert w.put(M_3=1e280).step(0.1) == ERROR and w.get(*COUNTERS) == counts
+        assert w.back(before).terminate() == OK and w.get(*COUNTERS) == counts
+        beyond(wheel().start(**values).put(M_3=1.0).to(0.5).get("n_rhs")[0], 0, "evaluations")
