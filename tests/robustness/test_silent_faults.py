@@ -168,7 +168,7 @@ def test_each_of_two_failures_has_its_own_message(wheel):
 
 def test_a_step_that_fails_counts_nothing_and_the_counts_stay_when_the_run_is_closed(wheel):
     for values in ({}, {"s": 0.03}, {"s": 0.03, "friction_law": 2, "omega_s": 1e-6}):
-        w = wheel().start(**values).to(0.5)
+        w = wheel().start(**values).to(1.5)
         counts = w.get(*COUNTERS)
         before = w.serialized()
         assert w.put(M_3=1e280).step(0.1) == ERROR and w.get(*COUNTERS) == counts
