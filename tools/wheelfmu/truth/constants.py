@@ -191,6 +191,8 @@ def measured(folder: str, chosen: Sequence[Constant]) -> pd.DataFrame:
             growth, work = now["error"] / np.maximum(base["error"], LEAST), now["work"] / base["work"]
             of, by = growth.idxmax(), work.idxmax()
             rows.append((name, factor, now["error"].max(), now["error"][of], growth[of], of, work[by], by))
+        pool.close()
+        pool.join()
     return pd.DataFrame(rows, columns=["name", "factor", "largest", "error", "growth", "of", "work", "by"])
 
 
