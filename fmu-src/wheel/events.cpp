@@ -18,7 +18,7 @@ bool has_layer_ahead(const Setup& setup, const InForce& now) {
 // (t, y) => how far the spin is from the edge of the layer, or the law from being stiff
 double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
   if (!now.layered) return softness_of(setup, now.scene_at(t), y);
-  const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
+  const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
   const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
   return (now.in_layer() ? inside : outside) / setup.rate_scale;
 }
@@ -39,7 +39,7 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 // that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
-  const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
+  const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
     return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
@@ -47,12 +47,12 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
 }
 
 int spin_alone(const Setup& setup, const InForce& now) {
-  return now.scene.friction.kind == WHEEL_ROLLING ? setup.formulation->spin_index : -1;
+  return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1;
 }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
-  if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
+  if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
   decide_law(setup, t, y, now, law == WHEEL_HELD);
 }
 
@@ -61,19 +61,18 @@ bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 // (t, y) => slip above the least; what is left of it at its end falls at once
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double near = 1e3;
-  const int slip = setup.sliding->slip_index;
   double least = least_slip(setup, t);
-  if (y[slip] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
+  if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
     const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
-    const double fall = std::fmin(rates.y_dot[slip], 0), turning = y[slip] * rates.y_dot[slip + 1];
+    const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
   }
-  return (y[slip] - least) / setup.slip_scale;
+  return (y[WHEEL_SLIP] - least) / setup.slip_scale;
 }
 
 void end_slip(const Setup& setup, double t, double* y, InForce& now) {
-  y[setup.sliding->slip_index] = 0;
+  y[WHEEL_SLIP] = 0;
   decide_contact(setup, t, y, now);
 }
 
@@ -85,9 +84,7 @@ double pressure_of(const Setup& setup, const double*, double N) { return N / set
 // (N) => below zero where it is infinite: the wheel jams
 double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // (y) => rad from where the wheel counts as flat
-double height_of(const Setup& setup, const double* y, double) {
-  return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
-}
+double height_of(const Setup& setup, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
 void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
 

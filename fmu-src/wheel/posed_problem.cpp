@@ -32,9 +32,9 @@ template <int states>
 }
 
 // (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 / sin(theta)
-// magnifies that of theta, of which a tenth is left over many steps. Where psi_dot is a state, accelerations of the
-// size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of
-// a slip, which follows them at once.
+// magnifies that of theta, of which a tenth is left over many steps. In (24) accelerations of the size of
+// r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip,
+// which follows them at once.
 double rounding_of_rates(double theta, double heading, bool slides) {
   const double cancels = slides ? heading * heading : heading;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
@@ -47,16 +47,16 @@ template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int spin = setup.formulation->spin_index, psi_dot = spin - 2;  // psi_dot is a state of the multibody form
-  const bool multibody = setup.formulation == &wheel_multibody;
-  const double theta = y[setup.formulation->tilt_index];
+  const int spin = WHEEL_OMEGA_3;
+  const double theta = y[WHEEL_THETA];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance, heading = multibody ? std::fabs(y[psi_dot]) * setup.time_scale : 0;
+  const bool multibody = setup.formulation == &wheel_multibody;
+  const double slow = share * setup.tolerance;
+  const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
   const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
-  double scales[WHEEL_MAX_STATES];
+  double scales[max_states];
   scales_at(setup, y[spin], scales);
-  if (multibody) scales[psi_dot] /= std::sin(theta);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
@@ -71,9 +71,8 @@ double margin(void* owner, int event, double t, const double* y) {
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
-  const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
-  std::fill_n(slopes, chi.size(), -slip_of(setup, scene, y, chi.back()).settling);
+  std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
 // (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment
@@ -88,7 +87,7 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const Rates backward = rates_of(setup, scene, y);
   const WheelFormulation& formulation = formulation_of(setup, scene);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
-  const double spin_change = change(setup.formulation->spin_index);
+  const double spin_change = change(WHEEL_OMEGA_3);
   for (int i = 0; i < formulation.states; ++i) others[i] = spin_change == 0 ? 0 : change(i) / spin_change;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
@@ -108,20 +107,20 @@ solver::Problem problem_of(Wheel& wheel) {
   const InForce& now = wheel.run.in_force;
   solver::Problem problem = {};
   const bool few = formulation_of(setup, now.scene).states == WHEEL_REDUCED_STATES;
-  problem.states = few ? WHEEL_REDUCED_STATES : WHEEL_MAX_STATES;
+  problem.states = few ? WHEEL_REDUCED_STATES : max_states;
   problem.owner = &wheel;
-  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
-  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
+  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
+  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
   if (now.inputs.varies) problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  const int spin = setup.formulation->spin_index;
+  const int spin = WHEEL_OMEGA_3;
   if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
   if (now.in_layer()) {  // an eighth of it
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning};
+  if (now.slides()) problem.settling = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;
@@ -134,7 +133,7 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
-  double state[WHEEL_MAX_STATES] = {};  // longer than that of the orbit, which no event moves
+  double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
   return pass(row, wheel.setup, t, state, wheel.run.in_force);
 }

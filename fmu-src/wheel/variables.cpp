@@ -45,8 +45,8 @@ double guide_moment(Reading& now, int axis) {
 // (axis) => m/s, of the wheel's material point at the contact: along e1 (0) or across it (1)
 double slip(const Reading& now, int axis) {
   if (now.scene.contact == WHEEL_GRIPS) return 0;
-  const double* const u = now.y + formulation_of(*now.setup, now.scene).slip_index;
-  return u[0] * (axis == 0 ? std::cos(u[1]) : std::sin(u[1]));
+  const double chi = now.y[WHEEL_CHI];
+  return now.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
 }
 
 double brake_moment(Reading& now) {
@@ -139,6 +139,13 @@ constexpr Row rows[] = {
 };
 
 static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
+
+constexpr bool is_in_its_place(const Row& row) {
+  const auto variable = static_cast<unsigned>(&row - rows);
+  return (row.role == Role::input) == (variable >= first_input && variable < stored_count);
+}
+static_assert(std::all_of(std::begin(rows), std::end(rows), is_in_its_place), "the inputs end the stored variables");
+static_assert(stored_count - first_input == inputs_count);
 
 }  // namespace
 
