@@ -16,7 +16,7 @@ from wheelfmu.fmu.driver import HEADLINE
 from wheelfmu.fmu.paths import build_folder
 from wheelfmu.truth import sliding
 from wheelfmu.truth.errors import by_instant
-from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.measure import transitions
 from wheelfmu.truth.scenes import SCENES, Scene
 from wheelfmu.truth.trust import DEFAULT, ROUNDING, Motion, Wheel, trust
 
@@ -103,7 +103,7 @@ def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel:
 
 
 def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
-    want = read_table("paper_friction_events")["t"][1:]
+    want = transitions()[1:, 0]
     times = np.linspace(0, 10, 1001)
     run, truth = wheel.motion({"s": "0.03"}, times, 1e-6), wheel.judge({"s": "0.03"}, times)
     found = trust(run, truth)

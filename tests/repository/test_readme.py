@@ -59,7 +59,7 @@ def table(path: Path) -> np.ndarray:
     return np.genfromtxt(path, delimiter=",", names=True)
 
 
-def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, reference_tables):
+def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, references):
     (shown,) = blocks("python")
     assert len(shown.splitlines()) <= 6
     free = shown.replace('"s": 0.03', '"s": 0')
@@ -69,21 +69,21 @@ def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, ref
         assert picture.read_bytes().startswith(b"\x89PNG")
         picture.unlink()
         theta = np.load(root / "run.npy")["theta"][::10]
-        within(np.abs(theta - reference_tables[scene]["theta"]).max(), 3e-8, "theta off the table, rad")
-        beyond(np.abs(theta - reference_tables[other]["theta"]).max(), 0.08, "theta off that of the other scene, rad")
+        within(np.abs(theta - references[scene]["theta"]).max(), 3e-8, "theta off the reference, rad")
+        beyond(np.abs(theta - references[other]["theta"]).max(), 0.08, "theta off that of the other scene, rad")
 
 
-def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, reference_tables):
+def test_the_commands_for_fmpy_run_as_written_and_do_what_their_comments_say(root, references):
     commands = blocks("bash", TOOLS)[0]
     assert all(line.startswith(("fmpy ", "#", "printf ")) for line in commands.splitlines())
     log = bash(commands, root)
     assert "No problems found" in log
     for word in ("stick", "release", "reversal", "lies flat"):
         assert word in log, word
-    friction, reference = table(root / "results" / "friction_again.csv"), reference_tables["friction"]
+    friction, reference = table(root / "results" / "friction_again.csv"), references["friction"]
     error = np.abs(friction["X_O"][::10] - reference["X_O"]).max()
-    within(error, 3e-8, "X_O off the table, m")
-    beyond(np.abs(friction["X_O"][::10] - reference_tables["free"]["X_O"]).max(), 0.1, "X_O of the free wheel, m")
+    within(error, 3e-8, "X_O off the reference, m")
+    beyond(np.abs(friction["X_O"][::10] - references["free"]["X_O"]).max(), 0.1, "X_O of the free wheel, m")
     energy = table(root / "results" / "energy.csv")
     assert energy.dtype.names == ("time", "theta", "E")
     within(np.ptp(energy["E"]) / energy["E"][0], 2e-12, "range of the energy, relative")  # friction takes a quarter
@@ -135,12 +135,12 @@ def test_the_lines_of_python_and_c_for_the_header_are_those_that_run(root):
     assert in_c == python(lines, root) and "tau = 5.6728" in in_c
 
 
-def test_a_solver_of_ones_own_gives_the_papers_wheel(root, reference_tables):
+def test_a_solver_of_ones_own_gives_the_papers_wheel(root, references):
     _, lines = blocks("python", HEADER_PAGE)
     assert len(lines.splitlines()) <= 10
     printed = python(lines, root)
     X_O, theta = map(float, re.search(r"X_O = (\S+) m, theta = (\S+) rad", printed).groups())
-    free, friction = reference_tables["free"], reference_tables["friction"]
+    free, friction = references["free"], references["friction"]
     within(max(abs(X_O - free["X_O"][-1]), abs(theta - free["theta"][-1])), 2e-8, "X_O, m, and theta, rad, by SciPy")
     beyond(abs(theta - friction["theta"][-1]), 0.05, "theta off that with friction, rad")
 
