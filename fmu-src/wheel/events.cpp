@@ -46,7 +46,7 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   return -now.scene.load.brake / setup.moment_scale;
 }
 
-int spin_alone(const Setup& setup, const InForce& now) {
+int spin_alone(const Setup&, const InForce& now) {
   return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1;
 }
 
@@ -84,7 +84,7 @@ double pressure_of(const Setup& setup, const double*, double N) { return N / set
 // (N) => below zero where it is infinite: the wheel jams
 double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // (y) => rad from where the wheel counts as flat
-double height_of(const Setup& setup, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
+double height_of(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
 void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
 
