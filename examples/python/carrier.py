@@ -1,8 +1,8 @@
 """A wheel on a body: the wheel's angles and axes from the axle's direction, and their rates. SI units.
 
-The body carries the axle n, a unit vector that points to the right of a wheel that rolls forward, and turns with the
-angular velocity omega, that of the steering included. Fixed axes, Z up; docs/vehicle.md. python carrier.py prints a body
-that yaws and rolls.
+The body carries the axle n, a unit vector to the right of a wheel that rolls forward, and turns with the angular
+velocity omega, that of the steering included. Fixed axes, Z up; docs/vehicle.md. python carrier.py prints the rates
+on a body that yaws and rolls.
 """
 
 from math import acos, atan2, cos, sin
@@ -39,4 +39,6 @@ if __name__ == "__main__":
     lean = 0.1  # rad, to the left: the axle rises
     psi_dot, theta_dot = rates(np.array([0, -cos(lean), sin(lean)]), np.array([0.3, 0.0, 0.5]))
     print(f"psi_dot = {psi_dot:.4f} rad/s, theta_dot = {theta_dot:.4f} rad/s")
-    print(f"theta of 1 degree of camber: {camber(np.radians(1), 1):.4f} rad left, {camber(np.radians(1), -1):.4f} right")
+    print(
+        f"theta of 1 degree of camber: {camber(np.radians(1), 1):.4f} rad left, {camber(np.radians(1), -1):.4f} right"
+    )

@@ -17,7 +17,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>'
 SSP = "http://ssp-standard.org/SSP1/SystemStructure"
 OMS = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
-OMSIMULATOR = """    <ssd:Annotations><!-- OMSimulator: co-simulation by its parallel master with this communication step -->
+OMSIMULATOR = """    <ssd:Annotations><!-- OMSimulator: its parallel master with this communication step -->
       <ssc:Annotation type="org.openmodelica"><oms:Annotations><oms:SimulationInformation>
         <oms:FixedStepMaster description="oms-ma" stepSize="{step}" absoluteTolerance="1e-6" relativeTolerance="1e-6"/>
       </oms:SimulationInformation></oms:Annotations></ssc:Annotation>
@@ -38,14 +38,20 @@ def read(path):
         for wheel in [name for name, fmu in fmus.items() if fmu == "wheel"] if "{wheel}" in (source, sink) else [""]:
             for name in names:
                 ends = [(end.format(wheel=wheel), name.format(wheel=wheel)) for end in (source, sink)]
-                connections.append(tuple((end, of.removesuffix(f"_{wheel}") if end == wheel else of) for end, of in ends))
+                connections.append(
+                    tuple((end, of.removesuffix(f"_{wheel}") if end == wheel else of) for end, of in ends)
+                )
     values = {name: start.get(fmu, {}) | start.get(name, {}) for name, fmu in fmus.items()}
     return system | {"connections": connections, "start": values}
 
 
 def parameter_set(values):
     """An SSV file."""
-    rows = [HEAD, f'<ssv:ParameterSet version="1.0" name="start" xmlns:ssv="{SSP}ParameterValues">', "  <ssv:Parameters>"]
+    rows = [
+        HEAD,
+        f'<ssv:ParameterSet version="1.0" name="start" xmlns:ssv="{SSP}ParameterValues">',
+        "  <ssv:Parameters>",
+    ]
     for name, value in values.items():
         kind, text = ("Boolean", str(value).lower()) if isinstance(value, bool) else ("Real", repr(float(value)))
         rows.append(f'    <ssv:Parameter name="{name}"><ssv:{kind} value="{text}"/></ssv:Parameter>')

@@ -135,7 +135,9 @@ def test_rates_in_initialization_mode_belong_to_the_start_and_after_it_they_jump
     after = wheel().start(**start)
     assert after.set(psi_dot_guide=turn) == OK
     rho, eta = R_0 + TUBE * sin(theta), TUBE * cos(theta)
-    jumped = spin + M * rho * eta * turn * sin(theta) / (J_Z + M * rho**2)  # (J_z + m rho^2) omega_z' = m rho eta omega_2'
+    jumped = spin + M * rho * eta * turn * sin(theta) / (
+        J_Z + M * rho**2
+    )  # (J_z + m rho^2) omega_z' = m rho eta omega_2'
     for found, omega_z in ((before, spin + turn * cos(theta)), (after, jumped)):
         within(abs(found.get("omega_z")[0] - omega_z), 1e-9, "omega_z, rad/s")
     beyond(abs(before.get("omega_z")[0] - after.get("omega_z")[0]), 0.01, "difference of both, rad/s")

@@ -44,7 +44,10 @@ def run(package: Path, halves: int = 1, **how: object) -> np.ndarray:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_package_is_valid_and_binds_the_start_values_of_its_system_at_the_components(built: Path, name: str):
-    package, system = built / f"{name}.ssp", runpy.run_path(str(VEHICLES / "package.py"))["read"](VEHICLES / SYSTEMS[name])
+    package, system = (
+        built / f"{name}.ssp",
+        runpy.run_path(str(VEHICLES / "package.py"))["read"](VEHICLES / SYSTEMS[name]),
+    )
     structure = read_ssd(str(package), validate=True)
     assert len(structure.system.connections) == len(system["connections"]) and not structure.system.parameterBindings
     every = {}

@@ -1,7 +1,7 @@
 """The limit of the communication step: couplings of wheel.fmu with bodies, each stable below it and divergent above.
 
-Two runs whose bodies, or wheel, start at speeds 1e-5 apart: over many steps their difference decays or grows. Bodies are integrated
-exactly under held forces. SI.
+Two runs whose bodies, or wheel, start at speeds 1e-5 apart: over many steps their difference decays or grows. Bodies
+are integrated exactly under held forces. SI.
 """
 
 import sys

@@ -24,7 +24,7 @@ FAULTS = {
         "study --vary s=0,0.1 --set m=12,5",
         "study --vary s=0,0.1 --stop-time 2,5",
         "example car v=18,5",
-        "example balance k_theta=2,5",
+        "example suspended k_h=2,5",
         "view motion.csv --r_0 0,3 --r 0,05",
         "view motion.csv --box 1,5 1 1",
     ),
@@ -45,8 +45,6 @@ FAULTS = {
         "study --vary formulation=1:3:5",
         "study --vary s=0,0.1 --set formulation=2.7",
         "study --vary keep_contact=true,maybe",
-        "example car path=1.5",
-        "example suspended follow=0.5",
         "example car manoeuvre=loop",
     ),
     "beyond a limit": (

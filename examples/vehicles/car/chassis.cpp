@@ -18,7 +18,7 @@
  *
  *   R n = (sin theta sin psi, -sin theta cos psi, cos theta),   psi_dot_guide = psi' + align (psi - psi_wheel),
  *
- * theta_dot_guide likewise; `align` takes back the angle that the communication steps leave. The chassis carries the wheel's
+ * theta_dot_guide likewise; `align` takes back the angle that the steps leave. The chassis carries the wheel's
  * moments M_guide_1 e1 + M_guide_2 e2, tau_brake e3 and the reaction of the drive.
  *
  * Steering (Ackermann): all wheels turn about one point on the line through the rear wheels. With L from that line to
@@ -38,7 +38,7 @@
 using Eigen::Matrix3d, Eigen::Quaterniond, Eigen::Vector3d;
 
 enum { at_r = 0, at_q = 3, at_v = 7, at_w = 10, at_psi = 13 }; /* states; the last is the heading, not wrapped */
-enum { wheels = 4, front = 2 };                        /* the front wheels come first */
+enum { wheels = 4, front = 2 };                                /* the front wheels come first */
 enum { at_g = 0, at_share = 3, at_x_R = at_share + wheels, at_L };
 
 struct Body {

@@ -6,7 +6,8 @@
  * The parameter follows the car, p' = (velocity + k_p (r - P)) t / |dP/dp| with t the path's direction. With e the
  * distance to the left of the path, and the path's curvature kappa taken where the car will be after the lag T_delta:
  *
- *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme,   delta' = (delta_ref - delta) / T_delta
+ *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme
+ *   delta'    = (delta_ref - delta) / T_delta
  *   M_drive   = k_v (v_ref - v) + k_i integral (v_ref - v) + programme
  *
  * All programmes rise by q(x) = x^3 (10 - 15 x + 6 x^2), which has continuous second derivatives. Until the car is

@@ -6,7 +6,16 @@
 set(wheels fl fr rl rr)
 
 # Appends one variable to the lists and texts of describe().
-macro(add_variable kind name unit start limit depends about)
+macro(
+  add_variable
+  kind
+  name
+  unit
+  start
+  limit
+  depends
+  about
+)
   set(real "unit=\"${unit}\"")
   set(how "variability=\"continuous\"")
   set(least any)
@@ -28,7 +37,10 @@ macro(add_variable kind name unit start limit depends about)
     set(how "variability=\"fixed\" initial=\"exact\"")
   endif()
   string(APPEND REFERENCES "inline constexpr int ${name} = ${count};\n")
-  string(APPEND VARIABLES "    <ScalarVariable name=\"${name}\" valueReference=\"${count}\" causality=\"${kind}\" ${how}\n")
+  string(
+    APPEND VARIABLES
+    "    <ScalarVariable name=\"${name}\" valueReference=\"${count}\" causality=\"${kind}\" ${how}\n"
+  )
   string(APPEND VARIABLES "      description=\"${about}\"><Real ${real}/></ScalarVariable>\n")
   list(APPEND ${kind}s ${name})
   math(EXPR count "${count} + 1") # and so the variable's index
@@ -77,7 +89,8 @@ function(describe table folder)
       string(REPLACE "?" "." depends "${depends}")
       string(REPLACE " " "|" depends "${depends}")
       add_variable("${CMAKE_MATCH_1}" "${CMAKE_MATCH_2}" "${CMAKE_MATCH_3}" "${value}" "${CMAKE_MATCH_5}" "${depends}"
-                   "${CMAKE_MATCH_7}")
+                         "${CMAKE_MATCH_7}"
+      )
     endforeach()
   endforeach()
 

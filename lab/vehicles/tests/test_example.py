@@ -1,4 +1,4 @@
-"""./scripts/example: faults before anything is built, exit status and output, and all commands that a document prints."""
+"""./scripts/example: faults before anything is built, exit status and output, all commands that a document prints."""
 
 import re
 import subprocess
