@@ -87,7 +87,7 @@ def test_another_solver_judges_and_where_it_is_the_same_engine_the_line_says_so(
     times = np.linspace(0, 2, 21)
     said = trust(wheel.motion(start, times, DEFAULT), wheel.judge(start, times)).said("A")
     assert f" of the range by {solver}" in said
-    assert ("; slides and stiff layers are the same engine's" in said) == shared
+    assert ("; slides and boundary layers are solved by the same solver" in said) == shared
 
 
 def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
@@ -174,7 +174,7 @@ def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path
     found = races.measured(wheel, given, times, np.ones(4))
     pictures, save = [], style.save_png
     monkeypatch.setattr(style, "save_png", lambda figure, path: pictures.append(figure) or save(figure, path))
-    races.write({"Rolling friction": found}, tmp_path)
+    races.write({"Rolling resistance": found}, tmp_path)
     header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
     assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
     errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}

@@ -140,7 +140,7 @@ def main(folder: Path, given: dict[str, str]) -> None:
     scales = np.array([r_0 + r, 1.0, fall, fall])
     with TemporaryDirectory() as folder_of_fmu:
         wheel = Wheel(extract(str(ROOT / "wheel.fmu"), folder_of_fmu))
-        for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
+        for name, label in (("free", "No rolling resistance"), ("friction", "Rolling resistance")):
             start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
             truth = wheel.judge(start, times)
             if len(truth.rows) > 1:
