@@ -131,7 +131,7 @@ def accepted(name: str, *arguments: str) -> bool:
     return (ROOT / "scripts" / name).is_file() and not (reads and reads.returncode)
 
 
-MADE_UP = re.compile(r"…|\b(?:NAME|FILE|FOLDER|PRESET|SECONDS|results|upright|my_study)\b")  # by the reader
+MADE_UP = re.compile(r"…|\b(?:NAME|FILE|FOLDER|PRESET|SECONDS|results|upright|driven|my_study)\b")  # by the reader
 
 
 @whole
