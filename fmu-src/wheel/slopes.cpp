@@ -242,7 +242,7 @@ void take_along_motion(Wheel& w, Quotients& quotients) {
 
 }  // namespace
 
-void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
+void read_rates(Wheel& w, Listed outputs, std::size_t count, double* out) {
   Quotients quotients;
   Reading reading(w);
   bool missing = false;
@@ -258,7 +258,7 @@ void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* ou
   }
 }
 
-bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
+bool add_slopes(Wheel& w, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums) {
   w.reading.reset();
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;

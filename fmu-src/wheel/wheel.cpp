@@ -19,7 +19,7 @@ bool check_start(const Wheel& w, Reading& start, const Reporter& reporter) {
     return reporter.check(false, "At the start the wheel %s: the run ends there.", ending_of(now, Event::jams).text);
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
   for (const double force : start.dynamics().lambda) sum += force;
-  const auto set = [&](variable::Reference v) { return Digits{w.demand.parameters[v], 3}; };
+  const auto set = [&](variable::Place v) { return Digits{w.demand.parameters[v], 3}; };
   return reporter.check(angle_from_flat(start.kinematics().theta) > 0 && std::isfinite(sum),
                         "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, "
                         "g = %s m/s2, omega_z = %s rad/s.",

@@ -2,6 +2,7 @@
 
 import argparse
 import runpy
+import signal
 import sys
 import time
 from pathlib import Path
@@ -11,7 +12,7 @@ from wheelfmu.fmu import outputs
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
-from .options import arguments_of
+from .options import INTERRUPTED, arguments_of
 from .plan import Study
 
 Content = dict[str, Any]  # `study`, `name`; of a file perhaps `draw`; of earlier results `out`
@@ -81,21 +82,22 @@ def main(argv: list[str] | None = None) -> int:
     try:
         return carried_out(arguments_of(argv))
     except Fault as fault:
-        print(f"study: {fault}", file=sys.stderr)
-        return 2
+        code, text = 2, str(fault)
+    except KeyboardInterrupt:
+        code, text = 128 + signal.SIGINT, INTERRUPTED
+    print(f"study: {text}", file=sys.stderr)
+    return code
 
 
 def carried_out(arguments: argparse.Namespace) -> int:
-    """Runs a study; what stops it is one line on stderr. Fault where it cannot be run as it is written."""
+    """Runs a study. Fault where it cannot be run as it is written."""
     try:
         conduct(arguments)
         return 0
     except OSError as fault:  # a full disk, or one that cannot be reached any more
-        code, text = 2, f"{arguments.out}: {fault}; results so far are kept; the same command continues from here."
-    except KeyboardInterrupt:
-        code, text = 130, "stopped; the same command continues from here."
+        text = f"{arguments.out}: {fault}; results so far are kept; the same command continues from here."
     print(f"study: {text}", file=sys.stderr)
-    return code
+    return 2
 
 
 if __name__ == "__main__":

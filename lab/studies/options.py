@@ -15,6 +15,7 @@ from wheelfmu.fmu.csv_file import read_table
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, Parser, Variable, limited, number, parted, single, suggestion, variables
 
+INTERRUPTED = "stopped; the same command continues from here."
 EXAMPLES = Path(__file__).parent / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 SHOWN = """examples:

@@ -183,5 +183,6 @@ def pack(fmu: str | Path, path: Path) -> Path:
         for name, folder in {"lab/studies": here, "wheelfmu/fmu": Path(shared.__file__).parent}.items():
             package.writestr(f"{name.partition('/')[0]}/__init__.py", JOINED)
             for source in folder.glob("*.py"):
-                package.write(source, f"{name}/{source.name}")
+                joined = f"\n{JOINED}" * (source.name == "__init__.py")
+                package.writestr(f"{name}/{source.name}", source.read_text(encoding="utf-8") + joined)
     return path

@@ -22,6 +22,7 @@ VARIABLES = {
     "CMAKE_BUILD_TYPE": "Debug",
     "MPLBACKEND": "module://matplotlib_inline.backend_inline",  # of a notebook
     "PYTHONOPTIMIZE": "2",
+    "PYTHONPATH": ".",  # of ROS or `module load`: another numpy
 }
 
 

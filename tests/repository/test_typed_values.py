@@ -1,13 +1,18 @@
 """What a user types after ./scripts/run is taken as typed, or refused; its results are of one run."""
 
 import os
+import re
+import resource
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 from support.typed import check_refused, check_taken
 
+from wheelfmu.fmu.outputs import fresh
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.progress import bar
 
@@ -149,19 +154,73 @@ def test_of_two_runs_at_once_each_prints_that_its_own_results_are_ready(simulate
 
 
 def test_only_one_process_at_a_time_uses_a_place(tmp_path: Path) -> None:
-    """The second waits for the first; at another place it does not."""
+    """The second waits for the first; at another place it does not. Each has its own TMPDIR, as host and container."""
     program = "import sys, time; from wheelfmu.fmu.outputs import alone; from pathlib import Path; t = time.monotonic\n"
     program += "with alone(Path(sys.argv[1])): print(t(), flush=True); time.sleep(1); print(t())"
 
     def spans(*places: str) -> list[list[float]]:
         commands = [[sys.executable, "-c", program, tmp_path / place] for place in places]
-        started = [subprocess.Popen(c, stdout=subprocess.PIPE, text=True) for c in commands]
+        started = []
+        for k, words in enumerate(commands):
+            (own := tmp_path / f"tmp_{k}").mkdir(exist_ok=True)
+            how = {"env": os.environ | {"TMPDIR": str(own)}, "stdout": subprocess.PIPE, "text": True}
+            started.append(subprocess.Popen(words, **how))
         return sorted([float(t) for t in one.communicate()[0].split()] for one in started)
 
     first, second = spans("a", "a")
     assert first[1] <= second[0]
     first, second = spans("a", "b")
     assert second[0] < first[1]
+
+
+def test_two_processes_of_one_number_as_in_two_containers_write_to_files_of_their_own(tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(os, "getpid", lambda: 7)
+    with fresh(tmp_path / "a") as one, fresh(tmp_path / "a") as other:
+        assert one != other and one.parent == other.parent == tmp_path
+        one.touch()
+        other.touch()
+
+
+SMALL = 500_000  # bytes that a file may have, an error as of a full disk
+WRITES = {"run": ("run", "wheel.fmu"), "view": ("view rolls.csv", "rolls.html")}  # a study: lab/studies/tests
+
+
+@pytest.mark.parametrize("name", WRITES)
+def test_a_full_disk_ends_a_command_with_one_sentence_and_leaves_nothing_half_written(tmp_path: Path, name) -> None:
+    def files() -> dict[Path, int]:
+        places = [tmp_path.iterdir(), ROOT.glob("wheel.fmu"), ROOT.glob(".*.wheel.fmu"), ROOT.glob("results/.new-*/*")]
+        return {path: path.stat().st_mtime_ns for place in places for path in place}
+
+    (tmp_path / "rolls.csv").write_text("time,X_O,Y_O,psi,theta,phi\n0,0,0,0,1.5,0\n1,1,0,0,1.5,-3\n")
+    before, (line, path) = files(), WRITES[name]
+    words = [sys.executable, "-P", "-m", "wheelfmu", *line.split()]
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (SMALL, SMALL))
+    done = subprocess.run(words, cwd=tmp_path, preexec_fn=limit, capture_output=True, text=True)
+    said = re.sub("^Waiting for another process.*\n", "", done.stderr)
+    assert re.fullmatch(rf"{name}: \S*{path}: File too large\.\n", said) and done.returncode == 2, done
+    assert files() == before
+
+
+def test_a_full_disk_behind_the_output_is_one_sentence_and_a_reader_that_has_gone_none() -> None:
+    words = [sys.executable, "-P", "-m", "wheelfmu", "help"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (2, "help: the output: No space left on device.\n")
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, text=True)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
+
+
+def test_a_folder_in_the_place_of_a_file_is_named(simulated: Path) -> None:
+    (simulated / "wheel.fmu").mkdir()
+    (simulated / "wheel.fmu" / "mine.txt").touch()
+    done = subprocess.run(runs(), cwd=simulated, capture_output=True, text=True)
+    assert done.stderr.endswith(
+        "wheel.fmu is a folder, and a file is to be written there: rename or delete the folder.\n"
+    )
+    assert (simulated / "wheel.fmu" / "mine.txt").exists()
 
 
 def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None:
@@ -171,4 +230,4 @@ def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None
     )
     for words, left in ((["killed"], 1), ([], 0)):
         subprocess.run([sys.executable, "-c", program, tmp_path, *words], check=False)
-        assert len([*tmp_path.iterdir()]) == left
+        assert len([*tmp_path.glob(".new-*")]) == left

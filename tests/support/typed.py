@@ -7,11 +7,15 @@ from pathlib import Path
 
 from wheelfmu.fmu.paths import ROOT
 
+# By the standard library alone; nothing is installed or carried out.
+READ = f"import sys; sys.path[:0] = {[str(ROOT / 'tools'), str(ROOT)]}; from wheelfmu.__main__ import needs; "
+READS = [sys.executable, "-S", "-B", "-P", "-c", READ + "needs(*sys.argv[1:])"]
+
 
 def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """What the command's reader, by the standard library alone, makes of a line."""
-    reads = [sys.executable, "-S", "-B", str(ROOT / "tools"), *line.split()]
-    return subprocess.run(reads, cwd=folder, env=os.environ | environment, capture_output=True, text=True)
+    how = {"cwd": folder, "env": os.environ | environment, "capture_output": True, "text": True}
+    return subprocess.run([*READS, *line.split()], **how)
 
 
 def check_refused(folder: Path, line: str, words: str) -> None:

@@ -20,8 +20,8 @@ has. The error of both runs is estimated by another solver (docs/recipes.md). An
 run; docs/in_your_tool.md shows one that varies.
 
 The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
-packages into .venv, and compiles. cargo-web is among the packages because cargo downloads the pinned source of
-SUNDIALS, the solver.
+packages into .venv, and compiles. cargo is among the packages because it downloads the pinned source of SUNDIALS, the
+solver.
 
 With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r); all but the last can be
 given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m, Y_O = 0, whatever its

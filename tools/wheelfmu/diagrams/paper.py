@@ -27,6 +27,7 @@ from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
 from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, values, variables
+from wheelfmu.fmu.outputs import worded
 from wheelfmu.truth.motion import Library
 
 SETTINGS = variables("parameter", "input")
@@ -385,4 +386,5 @@ def still(scene: Scene) -> str:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), values(sys.argv[2:]))
+    with worded("run"):
+        main(Path(sys.argv[1]), values(sys.argv[2:]))

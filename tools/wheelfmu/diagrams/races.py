@@ -20,6 +20,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
 from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
+from wheelfmu.fmu.outputs import worded
 from wheelfmu.truth.trust import DEFAULT, REPEATS, Wheel, trust
 
 BESIDE = 0.06  # decades: marks that are closer are one
@@ -153,4 +154,5 @@ def main(folder: Path, given: dict[str, str]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), values(sys.argv[2:]))
+    with worded("run"):
+        main(Path(sys.argv[1]), values(sys.argv[2:]))
