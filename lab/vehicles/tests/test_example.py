@@ -1,18 +1,16 @@
 """./scripts/example: its parameters, exit status and output, and all commands that a document prints."""
 
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from support.typed import asked
 
 from lab.vehicles import example, options
 from lab.vehicles.vehicle import Fmus
 from wheelfmu.fmu.paths import ROOT
 
-READS = [sys.executable, "-S", "-B", str(ROOT / "tools"), "example"]
 PAGES = (*(ROOT / "examples").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
@@ -24,14 +22,9 @@ FAILS = {
 }
 
 
-def reads(line: str) -> subprocess.CompletedProcess:
-    """The command line as it is checked before anything is built, by the standard library alone."""
-    return subprocess.run([*READS, *line.split()], capture_output=True, text=True)
-
-
 @pytest.mark.parametrize("name", options.VEHICLES)
 def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str):
-    listed = reads(f"{name} --help").stdout
+    listed = asked(ROOT, f"example {name} --help").stdout
     for parameter in options.takes(name):
         assert f"\n  {parameter} " in listed
         assert options.value(name, parameter, "1") == 1.0
