@@ -115,8 +115,9 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   const int spin = setup.formulation->spin_index;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
-  if (now.in_layer()) {  // an eighth of it
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) {
+    problem.steep = {spin, slopes_of_spin};
+    // an eighth of the layer
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
@@ -139,7 +140,7 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
-  if (now.slides() || now.in_layer()) return solver::Method::collocation;
+  if (now.slides() || now.scene.friction.kind == WHEEL_REGULARIZED) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

@@ -46,7 +46,6 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive.number(now.road.slope_direction);
   archive.count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive.range(now.scene.friction.sigma, -1, 1);
-  archive.count(now.layered, 0, 1);
   archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
   archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
