@@ -146,6 +146,7 @@ struct Solution {
 Solution solve(const Instant& now, bool pulls) {
   const Multibody& s = now.s;
   const double kappa = wheel_kappa(&now.scene.friction, s.omega_z), brake = now.scene.load.brake;
+  if (std::isnan(kappa)) return {Vector9::Constant(kappa), kappa, kappa};  // WHEEL_NO_LAW
   Vector9 column = now.column;
   column[about_axle] -= brake * kappa;  // tau = -(s N + brake) kappa
   Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, pulls ? 0 : now.scene.mu_slide);

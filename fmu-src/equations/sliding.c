@@ -52,6 +52,7 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
   a.N = on->N_still + w->m * b->l * a.omega_1_dot;
   a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
   a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
+  a = if_lawful(a);
   return (Motion){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,
