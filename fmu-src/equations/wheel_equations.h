@@ -227,7 +227,7 @@ void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, 
  * axle that could be added before it is released, N m. */
 void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion);
 
-/* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
+/* The same angle, rad, less whole turns: from -pi to pi: exact to the last digit up to 1e12 rad. */
 double wheel_less_turns(double angle);
 
 /* The angle from the first axis to (x, y), rad, from -pi to pi; 0 for (0, 0). */

@@ -70,15 +70,23 @@ bool check_value(Instance& i, fmi2ValueReference variable, double value) {
   return true;
 }
 
+// (value set) => value taken: masters form difference quotients about a brake that is off, and set a little less.
+double taken(Instance& i, fmi2ValueReference variable, double value) {
+  constexpr double little = 1e-6;  // N m, or of the capacity
+  if (variable != wheel::variable::M_brake || !(value < 0)) return value;
+  return value >= -little * std::fmax(1, wheel::value_of(i.wheel, variable)) ? 0 : value;
+}
+
 template <class Value>
 auto set(Type type, const fmi2ValueReference variables[], std::size_t count, const Value values[]) {
   return [=](Instance& i) {
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
       if (!check_settable(i, variables[k])) return fmi2Error;
+    const auto value = [&](std::size_t k) { return taken(i, variables[k], static_cast<double>(values[k])); };
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, variables[k], static_cast<double>(values[k]));
+      if (!check_value(i, variables[k], value(k))) return fmi2Discard;
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, variables[k], value(k));
     return fmi2OK;
   };
 }

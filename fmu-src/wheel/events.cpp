@@ -139,6 +139,9 @@ constexpr bool is_sound(const EventRow& row) {
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
 
+// Of a margin. Extreme loads on a tiny wheel would overflow, and a state holds finite numbers alone.
+constexpr double largest_margin = 1e100;
+
 // (value) => margin: below zero where the event has occurred
 double signed_margin(const EventRow& row, const InForce& now, double value) {
   return row.observed ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
@@ -155,8 +158,9 @@ Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, I
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  if (row.value) return signed_margin(row, now, row.value(setup, now, t, y));
-  return signed_margin(row, now, row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N));
+  const double value = row.value ? row.value(setup, now, t, y)
+                                 : row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N);
+  return std::clamp(signed_margin(row, now, value), -largest_margin, largest_margin);
 }
 
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {
@@ -172,7 +176,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     (take.template operator()<i>(), ...);
   }(std::make_index_sequence<row_count>());
-  return least;
+  return least < -largest_margin ? -largest_margin : least;
 }
 
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {

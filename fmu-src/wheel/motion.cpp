@@ -254,6 +254,19 @@ Outcome advance_by_stages(Wheel& w, double t) {
 
 }  // namespace
 
+Excess excess_of(const Wheel& w, double h) {
+  for (unsigned i = 0; i < inputs_count; ++i) {
+    const auto& c = w.demand.inputs[i];
+    if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
+    const Span span = span_of(c, h);
+    const unsigned input = first_input + i;
+    if (const Limit limit = limit_passed(input, span.largest); limit.relation) return {input, span.largest, limit};
+    if (i == brake_input) continue;
+    if (const Limit limit = limit_passed(input, span.least); limit.relation) return {input, span.least, limit};
+  }
+  return {};
+}
+
 Outcome advance(Wheel& w, double t) {
   if (w.demand.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
   arrive(w, t);

@@ -32,7 +32,7 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
         name = "derivatives" if k < 7 else "derivatives of a carrier's rate"
         found += [("input", 1, None, None), (name, 3, -MOST, MOST)]
     found += [("news", 1, 0, 2), ("slides", 1, 0, 1), ("phase", 1, 0, 12), ("ended by", 1, 0, EVENTS - 1)]
-    found += [("s, mu_max, mu_slide", 3, 0.0, MOST), ("slope", 1, 0.0, pi / 2), ("slope_direction", 1, -MOST, MOST)]
+    found += [("s, mu_max, mu_slide", 3, 0.0, MOST), ("slope", 1, 0.0, pi / 2), ("slope_direction", 1, -1e12, 1e12)]
     found += [("law", 1, 0, 4), ("sigma", 1, -1.0, 1.0), ("contact", 1, 0, 1)]
     found += [("origin", 1, -MOST, MOST), ("polynomials", 36, -MOST, MOST), ("t, last change", 2, -MOST, MOST)]
     found += [("grip due", 1, 0.0, inf), ("y", 12, -MOST, MOST), ("below, observed", 2 * EVENTS, 0, 1)]
