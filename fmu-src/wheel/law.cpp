@@ -19,7 +19,7 @@ WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0));
 // (scene, y) => the law
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
-  const double omega_z = y[setup.formulation->spin_index];
+  const double omega_z = y[WHEEL_OMEGA_3];
   const bool regularized = setup.friction_law == regularized_law;
   const bool outside = setup.has_layer() && std::fabs(omega_z) > layer_edge(setup);
   if (regularized && !outside) return {WHEEL_REGULARIZED, 0, setup.omega_s};
@@ -32,7 +32,7 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
 // friction or brake.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
-  return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
+  return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }
 
 // (scene, y) => the slip as it would be without friction
@@ -70,8 +70,7 @@ void apply_loads(const Setup& setup, const Road& road, double t, const Polynomia
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
   const WheelFormulation& f = formulation_of(setup, scene);
   const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
-  const double* const across = y + f.spin_index - 2;  // the rates across the axle
-  if (psi_dot == 0 && theta_dot == 0 && across[0] == 0 && across[1] == 0) return;
+  if (psi_dot == 0 && theta_dot == 0 && y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0) return;
   WheelKinematics k;
   f.kinematics(&setup.scene.wheel, y, &k);
   const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;

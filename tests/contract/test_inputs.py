@@ -216,7 +216,7 @@ def test_a_step_in_which_an_input_would_leave_its_bounds_is_refused_and_leaves_t
 
 @pytest.mark.parametrize("name", ["M_brake", "F_Z", "psi_dot_guide", "theta_dot_guide"])
 @pytest.mark.parametrize("order", [1, 2, 3])
-@pytest.mark.parametrize("size", [0.5, -2.0, 3e4, 1.1e7, 1e301, 3e307])
+@pytest.mark.parametrize("size", [0.5, -2.0, 3e4, 1.1e7, 1e301, 2e307])
 def test_a_state_after_a_step_with_derivatives_of_any_size_is_taken(wheel, name, order, size):
     w = wheel().start(guided=True, s=0.01).give({name: (0.0,) * order + (size,)})
     w.step(0.5)
