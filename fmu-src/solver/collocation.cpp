@@ -62,6 +62,7 @@ constexpr double part_of_tolerance = 0.2;
 constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.1;
 constexpr int most_sweeps = 30, most_tries = 40;
 constexpr double longer = 1.01;  // of the stop
+constexpr double leapt = 1e3;    // counts as error: the next size is a third
 // The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.
 constexpr double roundings = 2;
 
@@ -69,6 +70,20 @@ constexpr double roundings = 2;
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
   const Eigen::Map<const Rates> rates(&f[0][0]);
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
+}
+
+// Whether the steep state passes more of its bend in the step than six points can follow: near zero most_widths, farther
+// off as much more as it keeps away. The error of the polynomial does not show a bend between the points.
+bool leaps(const Steep& steep, const Step& step, double size, const double (&f)[radau_points][max_states]) {
+  constexpr double most_widths = 4;
+  double least = step.y_start[steep.state], largest = least;
+  for (int j = 0; j < radau_points; ++j) {
+    const double value = state_at(j, step, size, f)[steep.state];
+    least = std::fmin(least, value);
+    largest = std::fmax(largest, value);
+  }
+  const double away = std::fmax(0, std::fmax(least, -largest));
+  return largest - least > most_widths * steep.width + away;
 }
 
 }  // namespace
@@ -238,7 +253,8 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     const bool is_shortest = size_ <= shortest;
     if (is_shortest && problem.steep) weights[problem.steep->state] = 0;
     if (is_shortest && problem.settling) weights[problem.settling->state] = 0;
-    const double error = try_size(problem, weights, last.degree == radau_points, counters, step);
+    double error = try_size(problem, weights, last.degree == radau_points, counters, step);
+    if (error <= 1 && problem.steep && !is_shortest && leaps(*problem.steep, *step, size_, f_)) error = leapt;
     known_ = error <= 1;
     if (known_) Eigen::Map<Row>(step->y_end) = state_at(radau_points - 1, *step, size_, f_);
     like(problem, error, attempts, stops, *step);

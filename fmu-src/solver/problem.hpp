@@ -34,11 +34,12 @@ struct Settling {
   void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes);
 };
 
-// A state whose rate falls steeply with it: it settles at once where that vanishes.
-// (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state changes with
+// A state whose rate falls steeply with it: it settles at once where that vanishes. The rate bends within a few widths
+// about zero. (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state changes with
 // its rate.
 struct Steep {
   int state;
+  double width;  // > 0
   void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes,
                  double* others);
 };

@@ -80,7 +80,10 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
     motion.psi_dot = k.psi_dot;
     motion.theta_dot = k.theta_dot;
     const double hold = scene.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
-    wheel_jump(&scene, hold, psi_dot, theta_dot, &motion);
+    WheelScene ramp = scene;  // which may enter the layer
+    if (setup.friction_law == regularized_law && scene.friction.kind == WHEEL_ROLLING)
+      ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
+    wheel_jump(&ramp, hold, psi_dot, theta_dot, &motion);
   }
   set_out(f, setup.scene.wheel, motion, y);
 }

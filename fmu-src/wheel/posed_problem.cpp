@@ -115,7 +115,7 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
   if (now.scene.friction.kind == WHEEL_REGULARIZED) {
-    problem.steep = {WHEEL_OMEGA_3, slopes_of_spin};
+    problem.steep = {WHEEL_OMEGA_3, setup.omega_s, slopes_of_spin};
     // an eighth of the layer
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[WHEEL_OMEGA_3];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);

@@ -96,7 +96,7 @@ solver::Problem problem_of(Probe* probe) {
   if (s.watched) p.watch({1, watched, false});
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   if (s.kind == steep)
-    p.steep = {1, slopes_of_steep};
+    p.steep = {1, width, slopes_of_steep};
   else if (s.kind >= settling)
     p.settling = {1, 0, slopes_of_turning};
   return p;
