@@ -1,11 +1,11 @@
-// A jump of the rates at which a wheel carrier turns the wheel: the limit of ever steeper ramps, on which the ground goes
-// on pressing. Of a ramp in which omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the
-// symbols of sliding.c:
+// A jump of the rates at which a wheel carrier turns the wheel: the limit of ever steeper ramps. Of a ramp in which
+// omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
-// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1, which may be negative. Brake and weight are too weak for so
-// steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that they would hold over
-// one of a millisecond stays held.
+// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Where N is negative, the ramp relieves the ground: friction
+// of the weight that it takes away gives back to a spin, but drives no wheel that stands. Brake and weight are too weak for
+// so steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that they would hold
+// over one of a millisecond stays held.
 #include <Eigen/LU>
 #include <cmath>
 #include <utility>
@@ -26,6 +26,7 @@ struct Ramp {
   double a_x, a_y;      // m/s, changes of the slip without friction
   double free;          // rad/s, change of omega_3 of a wheel that rolls, without friction
   double mu_N, s_N;     // N s, N m s, impulses of friction; below zero where the ramp relieves the ground
+  double kappa;         // of the spin at the start; acts where the ramp relieves the ground
   double width_u, width_omega;  // m/s, rad/s, below which friction falls to zero
   bool slides;
 };
@@ -33,8 +34,10 @@ struct Ramp {
 // (place) => its rates along the ramp, by its entries. Held: omega_3 stays.
 Vector rates_of(const Ramp& r, const Vector& y, bool held, Matrix& slopes) {
   slopes.setZero();
-  const double kappa = std::tanh(y[2] / r.width_omega);
-  const double by_spin = held ? 0 : -r.s_N / r.J * (1 - kappa * kappa) / r.width_omega;
+  const bool relieves = r.s_N < 0;
+  const double part = std::tanh(y[2] / r.width_omega), given = r.kappa * y[2] > 0 ? r.kappa : 0;
+  const double kappa = relieves ? given : part;
+  const double by_spin = held || relieves ? 0 : -r.s_N / r.J * (1 - part * part) / r.width_omega;
   if (!r.slides) {
     slopes(2, 2) = by_spin;
     return {0, 0, r.free - r.s_N / r.J * kappa};
@@ -58,12 +61,12 @@ double turning(const Ramp& r, const Vector& y) {
 
 // (y, part h of the ramp) => y behind it, and the order at which the error fell below `exactness`; 0: it did not.
 // Linearly implicit Euler steps, extrapolated: friction that holds a speed at zero is stiff. Friction below zero drives a
-// speed away from there, and explicit steps follow it.
+// slip away from there, and explicit steps follow it.
 int step(const Ramp& r, double h, bool held, double scale, Vector& y) {
   constexpr int orders = 9;
   Matrix slopes, unused;
   rates_of(r, y, held, slopes);
-  if (r.s_N < 0 || r.mu_N < 0) slopes.setZero();
+  if (r.mu_N < 0) slopes.setZero();
   Vector table[orders];
   for (int n = 1; n <= orders; ++n) {
     const double part = h / n;
@@ -108,12 +111,13 @@ void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
 }
 
 // omega_3 of a wheel that rolls, after changes by `free`, and by `friction` against its sign, which can hold it at zero;
-// below zero it drives a wheel that turns, or that `free` releases.
+// below zero it gives back up to there.
 double spin_after(double spin, double free, double friction) {
   const double side = (spin > 0) - (spin < 0), whole = spin + free - side * friction;
   if (side * whole > 0) return whole;
   const double left = spin == 0 ? 1 : whole / (whole - spin);  // of the ramp, where the spin passes zero
-  return std::fabs(free) <= std::fmax(friction, 0) ? 0 : left * (free - std::copysign(friction, free));
+  const double against = std::fmax(friction, 0);
+  return std::fabs(free) <= against ? 0 : left * (free - std::copysign(against, free));
 }
 
 }  // namespace
@@ -137,11 +141,13 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
   r.s_N = scene->friction.kind == WHEEL_FRICTIONLESS ? 0 : w.s * N;
   r.slides = slides;
   Vector y = {motion->slip_x, motion->slip_y, motion->phi_dot + motion->psi_dot * c};
+  r.width_omega = scene->friction.omega_s;
+  r.kappa = regularized ? std::tanh(y[2] / r.width_omega) : (y[2] > 0) - (y[2] < 0);
   const double holds = std::fmax(ramp * hold + w.s * N, ramp * scene->load.brake);
   if (slides && (r.mu_N != 0 || r.s_N != 0)) {
     const double scale = y.head<2>().norm() + rho * std::fabs(y[2]) + std::fabs(r.a_x) + std::fabs(r.a_y);
     r.width_u = narrow * scale;
-    r.width_omega = regularized ? scene->friction.omega_s : narrow * scale / rho;
+    if (!regularized) r.width_omega = narrow * scale / rho;
     follow(r, holds, held && std::fabs(turning(r, y)) <= holds, scale, y);
     constexpr double few = 40;  // widths, within which a speed counts as zero
     if (y.head<2>().norm() < few * r.width_u) y[0] = y[1] = 0;
@@ -149,11 +155,10 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
   } else if (slides) {
     y[0] += r.a_x;
     y[1] += r.a_y;
-  } else if (regularized && r.s_N != 0) {
-    r.width_omega = scene->friction.omega_s;
+  } else if (regularized && r.s_N > 0) {
     follow(r, 0, false, rho * (std::fabs(y[2]) + std::fabs(r.free) + std::fabs(r.s_N) / r.J), y);
   } else if (!held || std::fabs(r.free * r.J) > holds) {
-    y[2] = spin_after(y[2], r.free, r.s_N / r.J);
+    y[2] = spin_after(y[2], r.free, r.s_N / r.J * (regularized ? std::fabs(r.kappa) : 1));
   }
   *motion = {motion->psi, motion->theta, motion->phi, psi_dot,         theta_dot,
              y[2] - psi_dot * c, motion->X_O, motion->Y_O, slides ? y[0] : 0, slides ? y[1] : 0};
