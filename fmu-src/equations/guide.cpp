@@ -89,6 +89,16 @@ int step(const Ramp& r, double h, bool held, double scale, Vector& y) {
   return 0;
 }
 
+// Whether slip or spin pass more of their bend at zero in a step than its points can follow: there some widths, farther
+// off as much more as they keep away.
+bool leaps(const Ramp& r, const Vector& y, const Vector& next) {
+  constexpr double widths = 4;
+  const double u = y.head<2>().norm(), u_next = next.head<2>().norm();
+  const double away = y[2] * next[2] > 0 ? std::fmin(std::fabs(y[2]), std::fabs(next[2])) : 0;
+  return std::fabs(next[2] - y[2]) > widths * r.width_omega + away ||
+         (next - y).head<2>().norm() > widths * r.width_u + std::fmin(u, u_next);
+}
+
 // The whole ramp, in steps that
 //   end at its end;
 //   are short enough where friction bends: there the least is taken as it is.
@@ -98,8 +108,8 @@ void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
     Vector next = y;
     const int order = step(r, h, held, scale, next);
     const bool released = held && order > 0 && std::fabs(turning(r, next)) > holds;
-    if ((order == 0 || released) && h > least) {
-      h *= released ? 0.5 : 0.25;
+    if ((order == 0 || released || leaps(r, y, next)) && h > least) {
+      h *= 0.4;
       continue;
     }
     if (next.allFinite()) y = next;
