@@ -2,10 +2,10 @@
 // omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
-// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Where N is negative, the ramp relieves the ground: friction
-// of the weight that it takes away gives back to a spin, but drives no wheel that stands. Brake and weight are too weak for
-// so steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that they would hold
-// over one of a millisecond stays held.
+// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Where N is negative, the ramp relieves the ground:
+// friction of the weight that it takes away gives back to a spin, but drives no wheel that stands. Brake and weight are
+// too weak for so steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that
+// they would hold over one of a millisecond stays held.
 #include <Eigen/LU>
 #include <cmath>
 #include <utility>
@@ -22,11 +22,11 @@ constexpr double ramp = 1e-3;  // s
 constexpr double exactness = 1e-12, narrow = 1e-13;
 
 struct Ramp {
-  double m, J, rho;     // kg, kg m2 about the axle, m
-  double a_x, a_y;      // m/s, changes of the slip without friction
-  double free;          // rad/s, change of omega_3 of a wheel that rolls, without friction
-  double mu_N, s_N;     // N s, N m s, impulses of friction; below zero where the ramp relieves the ground
-  double kappa;         // of the spin at the start; acts where the ramp relieves the ground
+  double m, J, rho;             // kg, kg m2 about the axle, m
+  double a_x, a_y;              // m/s, changes of the slip without friction
+  double free;                  // rad/s, change of omega_3 of a wheel that rolls, without friction
+  double mu_N, s_N;             // N s, N m s, impulses of friction; below zero where the ramp relieves the ground
+  double kappa;                 // of the spin at the start; acts where the ramp relieves the ground
   double width_u, width_omega;  // m/s, rad/s, below which friction falls to zero
   bool slides;
 };
@@ -60,8 +60,8 @@ double turning(const Ramp& r, const Vector& y) {
 }
 
 // (y, part h of the ramp) => y behind it, and the order at which the error fell below `exactness`; 0: it did not.
-// Linearly implicit Euler steps, extrapolated: friction that holds a speed at zero is stiff. Friction below zero drives a
-// slip away from there, and explicit steps follow it.
+// Linearly implicit Euler steps, extrapolated: friction that holds a speed at zero is stiff. Friction below zero drives
+// a slip away from there, and explicit steps follow it.
 int step(const Ramp& r, double h, bool held, double scale, Vector& y) {
   constexpr int orders = 9;
   Matrix slopes, unused;
@@ -120,8 +120,8 @@ void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
   }
 }
 
-// omega_3 of a wheel that rolls, after changes by `free`, and by `friction` against its sign, which can hold it at zero;
-// below zero it gives back up to there.
+// omega_3 of a wheel that rolls, after changes by `free`, and by `friction` against its sign, which can hold it at
+// zero; below zero it gives back up to there.
 double spin_after(double spin, double free, double friction) {
   const double side = (spin > 0) - (spin < 0), whole = spin + free - side * friction;
   if (side * whole > 0) return whole;
@@ -170,6 +170,6 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
   } else if (!held || std::fabs(r.free * r.J) > holds) {
     y[2] = spin_after(y[2], r.free, r.s_N / r.J * (regularized ? std::fabs(r.kappa) : 1));
   }
-  *motion = {motion->psi, motion->theta, motion->phi, psi_dot,         theta_dot,
-             y[2] - psi_dot * c, motion->X_O, motion->Y_O, slides ? y[0] : 0, slides ? y[1] : 0};
+  *motion = {motion->psi,        motion->theta, motion->phi, psi_dot,           theta_dot,
+             y[2] - psi_dot * c, motion->X_O,   motion->Y_O, slides ? y[0] : 0, slides ? y[1] : 0};
 }

@@ -72,8 +72,8 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
 }
 
-// Whether the steep state passes more of its bend in the step than six points can follow: near zero most_widths, farther
-// off as much more as it keeps away. The error of the polynomial does not show a bend between the points.
+// Whether the steep state passes more of its bend in the step than six points can follow: near zero most_widths,
+// farther off as much more as it keeps away. The error of the polynomial does not show a bend between the points.
 bool leaps(const Steep& steep, const Step& step, double size, const double (&f)[radau_points][max_states]) {
   constexpr double most_widths = 4;
   double least = step.y_start[steep.state], largest = least;

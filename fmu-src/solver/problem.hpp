@@ -35,8 +35,8 @@ struct Settling {
 };
 
 // A state whose rate falls steeply with it: it settles at once where that vanishes. The rate bends within a few widths
-// about zero. (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state changes with
-// its rate.
+// about zero. (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state
+// changes with its rate.
 struct Steep {
   int state;
   double width;  // > 0

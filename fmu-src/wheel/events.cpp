@@ -156,8 +156,8 @@ Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, I
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  const double value = row.value ? row.value(setup, now, t, y)
-                                 : row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N);
+  const double value =
+      row.value ? row.value(setup, now, t, y) : row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N);
   return std::clamp(signed_margin(row, now, value), -largest_margin, largest_margin);
 }
 

@@ -1,7 +1,7 @@
 // The laws of the contact: rolling resistance, the start and the end of a slide.
 //
-// decide_contact: does the wheel grip? If so, decide_law: the law of friction. If not, begin_slide: the direction of the
-// slip and the law, each of which depends on the other.
+// decide_contact: does the wheel grip? If so, decide_law: the law of friction. If not, begin_slide: the direction of
+// the slip and the law, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>

@@ -55,8 +55,8 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
   if (v == theta_start)
     return reporter.check(angle_from_flat(value) > flat_angle,
-                          "%s = %s rad: the wheel must stand, more than %s rad from lying flat at 0 and at pi.", row.name,
-                          shown, Digits{flat_angle, 6});
+                          "%s = %s rad: the wheel must stand, more than %s rad from lying flat at 0 and at pi.",
+                          row.name, shown, Digits{flat_angle, 6});
   return reporter.check(!passed.message, passed.message, row.name, shown, Digits{passed.value, 6});
 }
 
@@ -90,8 +90,8 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
           "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
           "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; by "
-          "co-simulation psi_dot_guide and theta_dot_guide turn it.", psi_dot_start,
-          theta_dot_start);
+          "co-simulation psi_dot_guide and theta_dot_guide turn it.",
+          psi_dot_start, theta_dot_start);
   require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
           mu_slide, mu_max);
   require(demand.slides || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),

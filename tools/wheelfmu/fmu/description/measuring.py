@@ -76,7 +76,8 @@ class Unit:
         loaded.kind, self.ended = kind, False
         self.states: tuple[str, ...] = ()
         self.wheel = loaded.new()
-        statuses = [self.wheel.set(**scene), self.wheel.setupExperiment(tolerance=TIGHTEST), self.wheel.enterInitializationMode()]
+        statuses = [self.wheel.set(**scene), self.wheel.setupExperiment(tolerance=TIGHTEST)]
+        statuses += [self.wheel.enterInitializationMode()]
         statuses += [self.wheel.exitInitializationMode()] if runs else []
         self.refused = max(statuses) > WARNING
         if runs and kind == MODEL_EXCHANGE and not self.refused:
