@@ -116,7 +116,7 @@ def test_without_friction_it_comes_down_to_one_tilt_in_every_swing(live, story):
 
 def test_friction_stops_the_spin_and_holds_it(live, story):
     first, _, count = numbers(story(6).split("At ")[1])
-    assert first == pytest.approx(1.2255, abs=5e-3)  # s, the trusted table
+    assert first == pytest.approx(1.2255, abs=5e-3)  # s, by the reference
     assert count == 37 == live.evaluate("page.wheels[0].phases.transitions.length")
 
 
