@@ -122,6 +122,11 @@ static inline double kappa_of(const WheelFriction* law, double omega_3) {
   return law->kind == WHEEL_ROLLING ? law->sigma : wheel_kappa(law, omega_3);
 }
 
+/* NaN where tau is: without a law (WHEEL_NO_LAW) nothing is answered, not even what a wheel carrier gives. */
+static inline Accelerations if_lawful(Accelerations a) {
+  return isnan(a.tau) ? (Accelerations){NAN, NAN, NAN, NAN, NAN} : a;
+}
+
 /* Two numbers in one store: a solver reads them so, and a processor waits where it reads two stores at once. */
 static inline void put_pair(double first, double second, double* out) {
   const Two pair = {first, second};

@@ -2,19 +2,126 @@
 // omega_1 and omega_2 change by d_1 and d_2, over a part of it from 0 to 1 and in the symbols of sliding.c:
 //   rolls   (J_z + m rho^2) omega_3_dot = m rho eta d_2 + tau
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
-// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Brake and weight are too weak for so steep a ramp. But a
-// jump stands for a ramp as long as a communication step, and a held wheel that they would hold over one of a
-// millisecond stays held.
+// with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Where N is negative, the ramp relieves the ground:
+// friction of the weight that it takes away gives back to a spin, but drives no wheel that stands. Brake and weight are
+// too weak for so steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that
+// they would hold over one of a millisecond stays held.
+#include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 #include "wheel_equations.h"
 
 namespace {
 
-constexpr double ramp = 1e-3;  // s
+using Vector = Eigen::Vector3d;  // u_x, u_y, omega_3
+using Matrix = Eigen::Matrix3d;
 
-// omega_3 after changes by `free`, and by `friction` against its sign, which can hold it at zero. Where the ramp
-// relieves the ground, friction is negative: it gives back to a spin, but drives no wheel that stands.
+constexpr double ramp = 1e-3;  // s
+// Of the largest speed of a ramp: a step's error, and the width of a law that has none, below which a speed is zero.
+constexpr double exactness = 1e-12, narrow = 1e-13;
+
+struct Ramp {
+  double m, J, rho;             // kg, kg m2 about the axle, m
+  double a_x, a_y;              // m/s, changes of the slip without friction
+  double free;                  // rad/s, change of omega_3 of a wheel that rolls, without friction
+  double mu_N, s_N;             // N s, N m s, impulses of friction; below zero where the ramp relieves the ground
+  double kappa;                 // of the spin at the start; acts where the ramp relieves the ground
+  double width_u, width_omega;  // m/s, rad/s, below which friction falls to zero
+  bool slides;
+};
+
+// (place) => its rates along the ramp, by its entries. Held: omega_3 stays.
+Vector rates_of(const Ramp& r, const Vector& y, bool held, Matrix& slopes) {
+  slopes.setZero();
+  const bool relieves = r.s_N < 0;
+  const double part = std::tanh(y[2] / r.width_omega), given = r.kappa * y[2] > 0 ? r.kappa : 0;
+  const double kappa = relieves ? given : part;
+  const double by_spin = held || relieves ? 0 : -r.s_N / r.J * (1 - part * part) / r.width_omega;
+  if (!r.slides) {
+    slopes(2, 2) = by_spin;
+    return {0, 0, r.free - r.s_N / r.J * kappa};
+  }
+  const double q = std::sqrt(y[0] * y[0] + y[1] * y[1] + r.width_u * r.width_u);
+  const double d_x = y[0] / q, d_y = y[1] / q, f_x = -r.mu_N * d_x, f_y = -r.mu_N * d_y;
+  const double omega_dot = held ? 0 : (r.rho * f_x - r.s_N * kappa) / r.J, per_spin = held ? 0 : 1 / r.J;
+  const double f_xx = -r.mu_N * (1 - d_x * d_x) / q, f_xy = r.mu_N * d_x * d_y / q,
+               f_yy = -r.mu_N * (1 - d_y * d_y) / q;
+  slopes.row(2) << r.rho * f_xx * per_spin, r.rho * f_xy * per_spin, by_spin;
+  slopes.row(0) << f_xx / r.m, f_xy / r.m, 0;
+  slopes.row(0) += r.rho * slopes.row(2);
+  slopes.row(1) << f_xy / r.m, f_yy / r.m, 0;
+  return {f_x / r.m + r.a_x + r.rho * omega_dot, f_y / r.m + r.a_y, omega_dot};
+}
+
+// N m s, the moment of friction that turns a sliding wheel.
+double turning(const Ramp& r, const Vector& y) {
+  return -r.rho * r.mu_N * y[0] / std::sqrt(y[0] * y[0] + y[1] * y[1] + r.width_u * r.width_u);
+}
+
+// (y, part h of the ramp) => y behind it, and the order at which the error fell below `exactness`; 0: it did not.
+// Linearly implicit Euler steps, extrapolated: friction that holds a speed at zero is stiff. Friction below zero drives
+// a slip away from there, and explicit steps follow it.
+int step(const Ramp& r, double h, bool held, double scale, Vector& y) {
+  constexpr int orders = 9;
+  Matrix slopes, unused;
+  rates_of(r, y, held, slopes);
+  if (r.mu_N < 0) slopes.setZero();
+  Vector table[orders];
+  for (int n = 1; n <= orders; ++n) {
+    const double part = h / n;
+    const Matrix inverse = (Matrix::Identity() - part * slopes).inverse();
+    Vector next = y;
+    for (int i = 0; i < n; ++i) next += inverse * (part * rates_of(r, next, held, unused));
+    Vector last = table[0];
+    std::swap(next, table[0]);
+    for (int k = 1; k < n; ++k) {
+      const Vector extrapolated = table[k - 1] + (table[k - 1] - last) / (double(n) / (n - k) - 1);
+      last = table[k];
+      table[k] = extrapolated;
+    }
+    if (n < 3) continue;
+    const Vector error = table[n - 1] - table[n - 2];
+    if (std::fmax(error.head<2>().norm(), r.rho * std::fabs(error[2])) > exactness * scale) continue;
+    y = table[n - 1];
+    return n;
+  }
+  return 0;
+}
+
+// Whether slip or spin pass more of their bend at zero in a step than its points can follow: there some widths, farther
+// off as much more as they keep away.
+bool leaps(const Ramp& r, const Vector& y, const Vector& next) {
+  constexpr double widths = 4;
+  const double u = y.head<2>().norm(), u_next = next.head<2>().norm();
+  const double away = y[2] * next[2] > 0 ? std::fmin(std::fabs(y[2]), std::fabs(next[2])) : 0;
+  return std::fabs(next[2] - y[2]) > widths * r.width_omega + away ||
+         (next - y).head<2>().norm() > widths * r.width_u + std::fmin(u, u_next);
+}
+
+// The whole ramp, in steps that
+//   end at its end;
+//   are short enough where friction bends: there the least is taken as it is.
+void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
+  constexpr double least = 1e-14;
+  for (double reached = 0, h = 1; reached < 1; h = std::fmin(h, 1 - reached)) {
+    Vector next = y;
+    const int order = step(r, h, held, scale, next);
+    const bool released = held && order > 0 && std::fabs(turning(r, next)) > holds;
+    if ((order == 0 || released || leaps(r, y, next)) && h > least) {
+      h *= 0.4;
+      continue;
+    }
+    if (next.allFinite()) y = next;
+    held = held && !released;
+    reached += h;
+    h *= order > 0 && order < 7 ? 4 : 1.2;
+    if (1 - reached < least) return;
+  }
+}
+
+// omega_3 of a wheel that rolls, after changes by `free`, and by `friction` against its sign, which can hold it at
+// zero; below zero it gives back up to there.
 double spin_after(double spin, double free, double friction) {
   const double side = (spin > 0) - (spin < 0), whole = spin + free - side * friction;
   if (side * whole > 0) return whole;
@@ -25,33 +132,44 @@ double spin_after(double spin, double free, double friction) {
 
 }  // namespace
 
-// Where friction bends the ramp, by the midpoint rule in many parts.
 void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion) {
   const WheelParameters& w = scene->wheel;
-  const double s = std::sin(motion->theta), c = std::cos(motion->theta), rho = w.r_0 + w.r * s;
+  const double sine = std::sin(motion->theta), c = std::cos(motion->theta), rho = w.r_0 + w.r * sine;
   const double lean = std::fabs(c) < 1e-15 ? 0 : c, eta = w.r * lean;  // of an upright wheel it is rounding
-  const double d_1 = theta_dot - motion->theta_dot, d_2 = (psi_dot - motion->psi_dot) * s;
-  const double N = scene->ground == WHEEL_GROUND_PULLS ? 0 : w.m * w.r_0 * lean * d_1,
-               omega_s = scene->friction.omega_s;
-  const bool slides = scene->contact == WHEEL_SLIDES;
-  const double inertia = w.J_z + (slides ? 0 : w.m * rho * rho), mu = slides ? scene->mu_slide : 0;
-  struct Place {
-    double u_x, u_y, omega_3;
-  } now = {motion->slip_x, motion->slip_y, motion->phi_dot + motion->psi_dot * c};
-  const auto move_by = [&](double part, const Place& at) {
-    const double u = std::sqrt(at.u_x * at.u_x + at.u_y * at.u_y), f = u > 0 ? part * mu * N / u : 0;
-    const double kappa = omega_s > 0 ? std::fabs(std::tanh(at.omega_3 / omega_s)) : 1, spin = now.omega_3;
-    const double free = slides ? -rho * f * at.u_x : part * w.m * rho * eta * d_2;
-    const double friction = part * kappa * w.s * N / inertia;
-    const double holds = std::fmax(ramp * hold + w.s * N, ramp * scene->load.brake);
-    const bool held = scene->friction.kind == WHEEL_HELD && std::fabs(free) <= part * holds;
-    const double omega_3 = held ? spin : spin_after(spin, free / inertia, friction);
-    return Place{now.u_x - f * at.u_x / w.m - part * eta * d_2 + rho * (omega_3 - spin),
-                 now.u_y - f * at.u_y / w.m + part * (w.r_0 * s + w.r) * d_1, omega_3};
-  };
-  const int parts = N != 0 && (slides || omega_s > 0) ? 128 : 1;
-  for (int i = 0; i < parts; ++i) now = move_by(1.0 / parts, move_by(0.5 / parts, now));
-  const double slip_x = slides ? now.u_x : 0, slip_y = slides ? now.u_y : 0;
-  *motion = {motion->psi, motion->theta, motion->phi, psi_dot, theta_dot, now.omega_3 - psi_dot * c,
-             motion->X_O, motion->Y_O,   slip_x,      slip_y};
+  const double d_1 = theta_dot - motion->theta_dot, d_2 = (psi_dot - motion->psi_dot) * sine;
+  const double N = scene->ground == WHEEL_GROUND_PULLS ? 0 : w.m * w.r_0 * lean * d_1;
+  const bool slides = scene->contact == WHEEL_SLIDES, held = scene->friction.kind == WHEEL_HELD;
+  const bool regularized = scene->friction.kind == WHEEL_REGULARIZED;
+  Ramp r = {};
+  r.m = w.m;
+  r.J = w.J_z + (slides ? 0 : w.m * rho * rho);
+  r.rho = rho;
+  r.a_x = -eta * d_2;
+  r.a_y = (w.r_0 * sine + w.r) * d_1;
+  r.free = w.m * rho * eta * d_2 / r.J;
+  r.mu_N = slides ? scene->mu_slide * N : 0;
+  r.s_N = scene->friction.kind == WHEEL_FRICTIONLESS ? 0 : w.s * N;
+  r.slides = slides;
+  Vector y = {motion->slip_x, motion->slip_y, motion->phi_dot + motion->psi_dot * c};
+  r.width_omega = scene->friction.omega_s;
+  r.kappa = regularized ? std::tanh(y[2] / r.width_omega) : (y[2] > 0) - (y[2] < 0);
+  const double holds = std::fmax(ramp * hold + w.s * N, ramp * scene->load.brake);
+  if (slides && (r.mu_N != 0 || r.s_N != 0)) {
+    const double scale = y.head<2>().norm() + rho * std::fabs(y[2]) + std::fabs(r.a_x) + std::fabs(r.a_y);
+    r.width_u = narrow * scale;
+    if (!regularized) r.width_omega = narrow * scale / rho;
+    follow(r, holds, held && std::fabs(turning(r, y)) <= holds, scale, y);
+    constexpr double few = 40;  // widths, within which a speed counts as zero
+    if (y.head<2>().norm() < few * r.width_u) y[0] = y[1] = 0;
+    if (!regularized && std::fabs(y[2]) < few * r.width_omega) y[2] = 0;
+  } else if (slides) {
+    y[0] += r.a_x;
+    y[1] += r.a_y;
+  } else if (regularized && r.s_N > 0) {
+    follow(r, 0, false, rho * (std::fabs(y[2]) + std::fabs(r.free) + std::fabs(r.s_N) / r.J), y);
+  } else if (!held || std::fabs(r.free * r.J) > holds) {
+    y[2] = spin_after(y[2], r.free, r.s_N / r.J * (regularized ? std::fabs(r.kappa) : 1));
+  }
+  *motion = {motion->psi,        motion->theta, motion->phi, psi_dot,           theta_dot,
+             y[2] - psi_dot * c, motion->X_O,   motion->Y_O, slides ? y[0] : 0, slides ? y[1] : 0};
 }

@@ -146,7 +146,9 @@ struct Solution {
 // A ground that pulls has no friction: only the brake's part is left.
 Solution solve(const Equations& now, bool pulls) {
   const Multibody& s = now.s;
-  const AxleLaw law = axle_law_of(&now.scene, wheel_kappa(&now.scene.friction, s.omega_z), pulls);
+  const double kappa = wheel_kappa(&now.scene.friction, s.omega_z);
+  if (std::isnan(kappa)) return {Vector9::Constant(kappa), kappa, kappa};  // WHEEL_NO_LAW
+  const AxleLaw law = axle_law_of(&now.scene, kappa, pulls);
   Vector9 column = now.column;
   column[about_axle] -= law.brake;
   Matrix9 matrix = system_matrix(now, law, pulls ? 0 : now.scene.mu_slide);

@@ -110,13 +110,13 @@ INLINED Accelerations move_guided(const WheelScene* scene, const Frame* f, const
   double h_3 = d->M.M_3 + f->rho * (d->k_1 + w->m * (f->eta * omega_2_dot));
   if (!(N > 0 || scene->ground == WHEEL_GROUND_PRESSES)) law.lever = 0;
   double tau = law.held ? -h_3 : axle_moment_of(&law, N);
-  return (Accelerations){
+  return if_lawful((Accelerations){
       .omega_1_dot = omega_1_dot,
       .omega_2_dot = omega_2_dot,
       .omega_3_dot = law.held ? 0.0 : (h_3 + tau) / (w->J_z + w->m * (f->rho * f->rho)),
       .N = N,
       .tau = tau,
-  };
+  });
 }
 
 /* One state under the scene's loads and laws. */

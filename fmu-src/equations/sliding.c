@@ -54,6 +54,7 @@ static inline Response response_of(const WheelParameters* w, const Body* b, cons
   const AxleLaw law = {.lever = b->law.lever, .brake = on->brake};
   a.tau = b->law.held ? -M_3 : axle_moment_of(&law, a.N) * b->kappa;
   a.omega_3_dot = b->law.held ? 0 : (M_3 + a.tau) * b->per_spin;
+  a = if_lawful(a);
   return (Response){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,

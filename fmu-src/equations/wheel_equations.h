@@ -239,11 +239,11 @@ void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, 
                         double out[2]);
 
 /* The motion of a guided wheel after a jump of the carrier's rates to psi_dot and theta_dot, rad/s: the limit of ever
- * steeper ramps of both. phi_dot and a slip change with them. hold: of a held wheel (WHEEL_HELD), the moment about the
- * axle that could be added before it is released, N m. */
+ * steeper ramps of both. phi_dot and a slip change with them; a wheel that rolls goes on rolling. hold: of a held wheel
+ * (WHEEL_HELD), the moment about the axle that could be added before it is released, N m. */
 void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion);
 
-/* The same angle, rad, less whole turns: from -pi to pi, exact to the last digit however large it is. */
+/* The same angle, rad, less whole turns: from -pi to pi: exact to the last digit up to 1e12 rad. */
 double wheel_less_turns(double angle);
 
 /* The angle from the first axis to (x, y), rad, from -pi to pi; 0 for (0, 0). */

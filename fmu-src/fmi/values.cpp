@@ -70,6 +70,13 @@ bool check_value(Instance& i, unsigned variable, double value) {
   return true;
 }
 
+// (value set) => value taken: masters form difference quotients about a brake that is off, and set a little less.
+double taken(Instance& i, fmi2ValueReference variable, double value) {
+  constexpr double little = 1e-6;  // N m, or of the capacity
+  if (variable != wheel::variable::M_brake || !(value < 0)) return value;
+  return value >= -little * std::fmax(1, wheel::value_of(i.wheel, variable)) ? 0 : value;
+}
+
 template <class Value>
 auto set(Type type, const fmi2ValueReference variables[], std::size_t count, const Value values[]) {
   return [=](Instance& i) {
@@ -77,9 +84,10 @@ auto set(Type type, const fmi2ValueReference variables[], std::size_t count, con
     const wheel::Listed listed = {variables};
     for (std::size_t k = 0; k < count; ++k)
       if (!check_settable(i, listed[k])) return fmi2Error;
+    const auto value = [&](std::size_t k) { return taken(i, listed[k], static_cast<double>(values[k])); };
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_value(i, listed[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, listed[k], static_cast<double>(values[k]));
+      if (!check_value(i, listed[k], value(k))) return fmi2Discard;
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, listed[k], value(k));
     return fmi2OK;
   };
 }

@@ -64,12 +64,27 @@ CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the 
 CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
 CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
 CONSTANT(double, stretch_to_stop, 0.01, "of the step", "by which it is longer to end at the stop: no tiny step");
+CONSTANT(double, leapt, 1e3, "errors", "what a step over a bend counts as: the next one is a third as long");
+CONSTANT(double, most_widths, 4, "widths", "the most of a bend that six points can follow in a step");
 CONSTANT(double, roundings, 2, "roundings of time", "the shortest step, in which only states that settle move");
 
 // (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
   const Eigen::Map<const Rates> rates(&f[0][0]);
   return Eigen::Map<const Row>(step.y_start) + size * (Eigen::Map<const Square>(&radau.integral[0][0]).row(j) * rates);
+}
+
+// Whether the steep state passes more of its bend in the step than six points can follow: near zero most_widths,
+// farther off as much more as it keeps away. The error of the polynomial does not show a bend between the points.
+bool leaps(const Settling& steep, const Step& step, double size, const double (&f)[radau_points][max_states]) {
+  double least = step.y_start[steep.state], largest = least;
+  for (int j = 0; j < radau_points; ++j) {
+    const double value = state_at(j, step, size, f)[steep.state];
+    least = std::fmin(least, value);
+    largest = std::fmax(largest, value);
+  }
+  const double away = std::fmax(0, std::fmax(least, -largest));
+  return largest - least > most_widths * steep.width + away;
 }
 
 }  // namespace
@@ -240,7 +255,8 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     const bool is_shortest = size_ <= shortest;
     if (is_shortest && problem.steep) weights[problem.steep->state] = 0;
     if (is_shortest && problem.turning) weights[problem.turning->state] = 0;
-    const double error = try_size(problem, weights, last.degree == radau_points, counters, step);
+    double error = try_size(problem, weights, last.degree == radau_points, counters, step);
+    if (error <= 1 && problem.steep && !is_shortest && leaps(*problem.steep, *step, size_, f_)) error = leapt;
     known_ = error <= 1;
     if (known_) Eigen::Map<Row>(step->y_end) = state_at(radau_points - 1, *step, size_, f_);
     like(problem, error, attempts, stops, *step);

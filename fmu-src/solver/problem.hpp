@@ -36,6 +36,7 @@ struct Settling {
   int state, speed;
   void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes,
                  double* others);
+  double width = INFINITY;  // the rate bends within a few widths about zero
 };
 
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on

@@ -59,8 +59,6 @@ class Solver {
     expand();
     return step_;
   }
-  // Most often without it.
-  const Step& bare_step() const { return step_; }
   double step_start() const { return step_.start; }
   double known_until() const { return known_until_; }
   int event() const { return problem_.watched[fallen_].event; }

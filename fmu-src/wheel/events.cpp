@@ -10,24 +10,22 @@
 namespace wheel {
 namespace {
 
-// An input that varies can make a regularized law stiff.
-bool has_layer_ahead(const Setup& setup, const InForce& now) {
-  return now.layered || (now.inputs.varies && can_stiffen(setup, now));
+bool can_change_layer(const Setup& setup, const InForce& now) {
+  return setup.has_layer() && now.scene.friction.kind != WHEEL_FRICTIONLESS;
 }
 
-// (t, y) => how far the spin is from the edge of the layer, or the law from being stiff
-double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
-  if (!now.layered) return softness_of(setup, now.scene_at(t), y);
+// (y) => how far the spin is from the edge of the layer
+double way_to_layer(const Setup& setup, const InForce& now, double, const double* y) {
   const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
   const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
-  return (now.in_layer() ? inside : outside) / setup.rate_scale;
+  return (now.scene.friction.kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 
 // In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
   if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
-  return law == WHEEL_HELD || (law == WHEEL_ROLLING && !now.layered);
+  return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
 
 // (t, y) => capacity that is not needed to hold the wheel
@@ -92,9 +90,9 @@ void change_layer(const Setup& setup, double t, double* y, InForce& now) { decid
 
 constexpr EventRow event_rows[] = {
     {.event = Event::changes_layer,
-     .can_occur = has_layer_ahead,
+     .can_occur = can_change_layer,
      .value = way_to_layer,
-     .exchanged = false,  // it leaves a stiff law to the caller's solver
+     .exchanged = false,  // it leaves the law to the caller's solver
      .follow = change_layer},
     {.event = Event::spin_changes,
      .can_occur = can_change_spin,
@@ -139,6 +137,9 @@ constexpr bool is_sound(const EventRow& row) {
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
 
+// Of a margin. Extreme loads on a tiny wheel would overflow, and a state holds finite numbers alone.
+constexpr double largest_margin = 1e100;
+
 // (value) => margin: below zero where the event has occurred
 double signed_margin(const EventRow& row, const InForce& now, double value) {
   return row.observed ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
@@ -155,8 +156,9 @@ Consequence follow_event(const EventRow& row, const Setup& setup, double t, doub
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  if (row.value) return signed_margin(row, now, row.value(setup, now, t, y));
-  return signed_margin(row, now, row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N));
+  const double value =
+      row.value ? row.value(setup, now, t, y) : row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N);
+  return std::clamp(signed_margin(row, now, value), -largest_margin, largest_margin);
 }
 
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {
@@ -172,7 +174,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     (take.template operator()<i>(), ...);
   }(std::make_index_sequence<row_count>());
-  return least;
+  return least < -largest_margin ? -largest_margin : least;
 }
 
 void place_observed(const Setup& setup, double t, const double* y, InForce& now) {

@@ -23,6 +23,10 @@ bool acts(const double* c, int from) {
 // number
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
+  if (!std::isfinite(d)) {
+    const double less[] = {0, 0x1p-600 * c[1], 0x1p-600 * c[2], 0x1p-600 * c[3]};
+    return zeros_of_slope(less, zeros);
+  }
   if (!(d > 0)) return 0;
   const double q = -(half_b + std::copysign(std::sqrt(d), half_b));
   zeros[0] = q / a;
@@ -47,6 +51,20 @@ bool continues(const double* c, double tau, double rounding, const double* next)
 }
 
 }  // namespace
+
+Span span_of(const double (&c)[max_order + 1], double tau) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double zeros[2];
+  Span span = {c[0], c[0]};
+  const auto take = [&](double value) {
+    span = std::isfinite(value) ? Span{std::fmin(span.least, value), std::fmax(span.largest, value)}
+                                : Span{-infinite, infinite};
+  };
+  for (int k = zeros_of_slope(c, zeros); k > 0; --k)
+    if (zeros[k - 1] > 0 && zeros[k - 1] < tau) take(value_at(c, zeros[k - 1]));
+  take(value_at(c, tau));
+  return span;
+}
 
 bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input], 0) || acts(inputs[guide_input + 1], 0); }
 

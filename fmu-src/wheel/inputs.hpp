@@ -25,6 +25,12 @@ bool is_guiding(const Polynomials& inputs);
 void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load);
 WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
 
+// (polynomial, tau: s) => least and largest value from its origin to tau, infinite where a value overflows
+struct Span {
+  double least, largest;
+};
+Span span_of(const double (&c)[max_order + 1], double tau);
+
 // The inputs in force.
 struct Inputs {
   double origin = 0;  // s, clock of the run

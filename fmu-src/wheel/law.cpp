@@ -1,7 +1,7 @@
 // The laws of the contact: rolling resistance, the start and the end of a slide.
 //
-// decide_contact: does the wheel grip? If so, decide_law: the law of friction; a stiff one by enter_layer. If not,
-// begin_slide: the direction of the slip and the law, each of which depends on the other.
+// decide_contact: does the wheel grip? If so, decide_law: the law of friction. If not, begin_slide: the direction of
+// the slip and the law, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>
@@ -12,16 +12,17 @@ namespace {
 
 constexpr WheelFriction frictionless = {WHEEL_FRICTIONLESS, 0, 0}, held = {WHEEL_HELD, 0, 0};
 WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.0, 0}; }
-WheelFriction regularized(const Setup& setup) { return {WHEEL_REGULARIZED, 0, setup.omega_s}; }
 
 // (moment that would hold the wheel) => rolling against it
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
-// (scene, y) => the law, apart from layers.
+// (scene, y) => the law
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
-  if (setup.friction_law == regularized_law) return regularized(setup);
   const double omega_z = y[WHEEL_OMEGA_3];
+  const bool regularized = setup.friction_law == regularized_law;
+  const bool outside = setup.has_layer() && std::fabs(omega_z) > layer_edge(setup);
+  if (regularized && !outside) return {WHEEL_REGULARIZED, 0, setup.omega_s};
   if (omega_z != 0) return rolling(omega_z > 0);
   const Hold hold = hold_at(setup, scene, y);
   return hold.reserve >= 0 ? held : released_from(hold);
@@ -51,7 +52,6 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   set_road_and_inputs(setup, road_asked(demand), t, demand.inputs, now);
   if (setup.steered()) set_guide_rates(setup, demand, now.scene, false, y);
-  now.layered = false;
   decide_contact(setup, t, y, now);
 }
 
@@ -80,7 +80,10 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
     motion.psi_dot = k.psi_dot;
     motion.theta_dot = k.theta_dot;
     const double hold = scene.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
-    wheel_jump(&scene, hold, psi_dot, theta_dot, &motion);
+    WheelScene ramp = scene;  // which may enter the layer
+    if (setup.friction_law == regularized_law && scene.friction.kind == WHEEL_ROLLING)
+      ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
+    wheel_jump(&ramp, hold, psi_dot, theta_dot, &motion);
   }
   set_out(f, setup.scene.wheel, motion, y);
 }
@@ -90,7 +93,6 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
   if (now.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
   now.scene.contact = WHEEL_GRIPS;
-  now.layered = false;
   decide_law(setup, t, y, now);
   if (grip_left(setup, now, t, y) >= 0) return;
   const WheelScene scene = now.scene_at(t);
@@ -99,11 +101,9 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
-  WheelScene scene = now.scene_at(t);
-  scene.friction = released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
-  now.scene.friction = scene.friction;
-  const bool stiff = can_stiffen(setup, now) && (now.slides() || softness_of(setup, scene, y) < 0);
-  if (stiff || now.layered) enter_layer(setup, y, now);
+  const WheelScene scene = now.scene_at(t);
+  now.scene.friction =
+      released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
@@ -121,7 +121,6 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
     }
   } else {
     take(friction_at(setup, scene, now.inputs.braked, y));
-    decide_law(setup, t, y, now);
   }
 }
 
@@ -157,30 +156,6 @@ Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
   const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};
-}
-
-bool can_stiffen(const Setup& setup, const InForce& now) {
-  return !setup.exchanged && !now.layered && now.scene.friction.kind == WHEEL_REGULARIZED;
-}
-
-void enter_layer(const Setup& setup, const double* y, InForce& now) {
-  const double omega_z = y[WHEEL_OMEGA_3];
-  now.layered = true;
-  now.scene.friction = std::fabs(omega_z) > layer_edge(setup) ? rolling(omega_z > 0) : regularized(setup);
-}
-
-// (s N + M_brake) / omega_s over the spin inertia.
-double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
-  const WheelParameters& wheel = scene.wheel;
-  const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
-  const double N = std::max(setup.weight, rates_of(setup, scene, y).N);
-  return wheel_axle_capacity(wheel.s, N, scene.load.brake) / (setup.omega_s * inertia);
-}
-
-// To be compared with the time scale; below the limit DOP853 alone is faster through the layer.
-double softness_of(const Setup& setup, const WheelScene& scene, const double* y) {
-  constexpr double stiff = 500;
-  return 1 - decay_of(setup, scene, y) * setup.time_scale / stiff;
 }
 
 }  // namespace wheel

@@ -23,7 +23,7 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
 // (t, y) => law of friction. At omega_z = 0 after Filippov: held where the moment that holds the wheel is within
-// s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold it. A stiff
+// s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold it. A
 // regularized law is decided by the place of omega_z in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
 
@@ -56,18 +56,8 @@ struct Hold {
 };
 Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 
-// rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
-// digit.
+// rad/s, half the width of the layer of a regularized law (Setup::has_layer).
 CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");
 inline double layer_edge(const Setup& setup) { return edge * setup.omega_s; }
-
-// A regularized law that is steep is solved by its layer and, around it, by the exact law, as it is wherever the wheel
-// slides. Once solved so, it stays so until an input or the contact changes.
-bool can_stiffen(const Setup& setup, const InForce& in_force);
-void enter_layer(const Setup& setup, const double* y, InForce& in_force);
-// (scene, y) => 1/s, the fastest decay of the law, that at omega_z = 0.
-double decay_of(const Setup& setup, const WheelScene& scene, const double* y);
-// (scene, y) => below zero where the law is steep.
-double softness_of(const Setup& setup, const WheelScene& scene, const double* y);
 
 }  // namespace wheel

@@ -147,24 +147,6 @@ bool is_about_to_jam(const Wheel& w) {
   return wheel_slip(&w.run.in_force.scene, y, y[WHEEL_CHI]).room < little_room;  // the same whatever acts
 }
 
-// Where the wheel rests in a regularized law that is soft enough for DOP853 on a passage, the decay of the law limits
-// its steps, not the motion: the layer is entered. The last step alone decides, so that the communication points do
-// not. Apart, so that nothing of it slows the other laws down.
-[[gnu::noinline]] Outcome rest_in_law(Wheel& w) {
-  constexpr double still = 1e-3, limit = 5;  // change of omega_z over omega_s; decay over the step: DOP853 bears 6
-  InForce& now = w.run.in_force;
-  if (now.layered) return Outcome::stepped;
-  const solver::Step& step = w.solver.bare_step();
-  const double before = step.y_start[WHEEL_OMEGA_3], omega_s = w.setup.omega_s;
-  const double omega_z = step.y_end[WHEEL_OMEGA_3];
-  if (!(std::fabs(omega_z - before) < still * omega_s)) return Outcome::stepped;
-  const double part = std::tanh(omega_z / omega_s), decay = decay_of(w.setup, now.scene_at(step.end), step.y_end);
-  if (!(decay * (1 - part * part) * (step.end - step.start) > limit)) return Outcome::stepped;
-  move_to(w, w.solver.known_until());
-  enter_layer(w.setup, state_now(w), now);
-  return start_solver(w);
-}
-
 // Stage 3 of a motion that is stepped through, until
 //   t is known: stepped;
 //   an event ends the run, or a step fails where the wheel is about to jam: event;
@@ -180,8 +162,6 @@ Outcome step_to(Wheel& w, double t) {
           "force, a brake or a regularized law be extreme";
       return Outcome::failed;
     }
-    const bool regularized = w.run.in_force.scene.friction.kind == WHEEL_REGULARIZED;
-    if (regularized && rest_in_law(w) == Outcome::failed) return Outcome::failed;
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) {
@@ -268,6 +248,19 @@ Outcome advance_by_stages(Wheel& w, double t) {
 }
 
 }  // namespace
+
+Excess excess_of(const Wheel& w, double h) {
+  for (unsigned i = 0; i < inputs_count; ++i) {
+    const auto& c = w.demand.inputs[i];
+    if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
+    const Span span = span_of(c, h);
+    const unsigned input = first_input + i;
+    if (const Limit limit = limit_passed(input, span.largest); limit.relation) return {input, span.largest, limit};
+    if (i == brake_input) continue;
+    if (const Limit limit = limit_passed(input, span.least); limit.relation) return {input, span.least, limit};
+  }
+  return {};
+}
 
 Outcome advance(Wheel& w, double t) {
   if (w.demand.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);

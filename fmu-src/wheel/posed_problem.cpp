@@ -119,10 +119,9 @@ solver::Problem problem_of(Wheel& wheel) {
   CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
   problem.near = near;
   problem.longest_step = setup.longest_step;
-  const int spin = WHEEL_OMEGA_3;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, solver::Settling::none, slopes_of_spin};
-  if (now.in_layer()) {
-    const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) {
+    problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
+    const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
   if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
@@ -144,7 +143,7 @@ Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
-  if (now.slides() || now.in_layer()) return solver::Method::collocation;
+  if (now.slides() || now.scene.friction.kind == WHEEL_REGULARIZED) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

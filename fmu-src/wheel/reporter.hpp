@@ -22,7 +22,11 @@ class NumberText {
     // By the C library: std::to_chars would bring C++'s run-time library, with exceptions, into a release.
     do std::snprintf(text_, sizeof text_, "%.*g", digits, number.x);
     while (number.digits == 0 && std::strtod(text_, nullptr) != number.x && ++digits <= 17);
-    if (char* comma = std::strchr(text_, ',')) *comma = '.';
+    char* const mark = text_ + std::strspn(text_, "+-0123456789");  // of one or more bytes, if there is one
+    const std::size_t length = std::strcspn(mark, "+-0123456789einfa");
+    if (length == 0) return text_;
+    *mark = '.';
+    std::memmove(mark + 1, mark + length, std::strlen(mark + length) + 1);
     return text_;
   }
 

@@ -34,7 +34,7 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 // at the same instant the later one counts.
 enum class Event : int {
   none,
-  changes_layer,  // omega_z enters or leaves the layer of a stiff regularized law, or the law becomes stiff
+  changes_layer,  // omega_z enters or leaves the layer of a regularized law
   spin_changes,   // omega_z reaches zero, or friction and brake can no longer hold it there
   lost_grip,      // the wheel needs a friction coefficient above mu_max
   slip_ends,      // the slip falls to zero
@@ -64,10 +64,8 @@ struct InForce {
   // the inputs, `ground` follows from `below`. Without a law until one is decided.
   WheelScene scene = {};
   Inputs inputs;
-  bool layered = false;          // a regularized law so steep that it is the exact one but in its layer
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
 
-  bool in_layer() const { return layered && scene.friction.kind == WHEEL_REGULARIZED; }
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
   bool pulls() const { return is_below(Event::lost_contact); }
   void cross(Event event) {

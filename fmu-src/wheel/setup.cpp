@@ -61,12 +61,9 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   const Limit passed = limit_passed(v, value);
   if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
   if (v == theta_start)
-    return reporter.check(std::sin(value) > flat_angle && value > 0 && value < row.max,
-                          "%s = %s rad: the wheel must stand above the ground, 0 < theta < %s.", row.name, shown,
-                          Digits{row.max, 6});
-  if (v == psi_start || v == phi_start)
-    return reporter.check(std::fabs(value) <= largest_angle, "%s = %s rad: beyond %s rad an angle has too few digits.",
-                          row.name, shown, Digits{largest_angle, 6});
+    return reporter.check(angle_from_flat(value) > flat_angle,
+                          "%s = %s rad: the wheel must stand, more than %s rad from lying flat at 0 and at pi.",
+                          row.name, shown, Digits{flat_angle, 6});
   return reporter.check(!passed.message, passed.message, row.name, shown, Digits{passed.value, 6});
 }
 
@@ -82,10 +79,11 @@ void choose_equations(Setup& setup, const Demand& demand) {
 bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
   using namespace variable;
   const double* v = demand.parameters;
-  bool sound = true;
-  for (unsigned k = 0; k < stored_count; ++k) sound &= check_value(reporter, k, demand.value(k));
+  bool sound = true, fine[stored_count];
+  for (unsigned k = 0; k < stored_count; ++k) sound &= fine[k] = check_value(reporter, k, demand.value(k));
+  // Between parameters each of which is fine.
   const auto require = [&](bool holds, const char* message, auto... parameters) {
-    sound &= reporter.check(holds, message, Digits{v[parameters], 9}...);
+    sound &= reporter.check(holds || !(fine[parameters] && ...), message, Digits{v[parameters], 9}...);
   };
   // No mass distribution has one principal moment above the sum of the others; the limit is the flat disc.
   constexpr double rounding = 1e-12;
@@ -98,8 +96,9 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   require(!exchanged || v[formulation] != int{multibody_formulation},
           "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
-          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both.", psi_dot_start,
-          theta_dot_start);
+          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; by "
+          "co-simulation psi_dot_guide and theta_dot_guide turn it.",
+          psi_dot_start, theta_dot_start);
   require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
           mu_slide, mu_max);
   require(demand.slides || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),

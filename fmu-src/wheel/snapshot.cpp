@@ -43,10 +43,9 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   archive.count(run.ended_by, 0, event_count - 1);
   for (double* x : {&now.road.s, &now.road.mu_max, &now.road.mu_slide}) archive.range(*x, 0, archive.greatest);
   archive.range(now.road.slope, 0, upright);
-  archive.number(now.road.slope_direction);
+  archive.range(now.road.slope_direction, -largest_angle, largest_angle);
   archive.count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive.range(now.scene.friction.sigma, -1, 1);
-  archive.count(now.layered, 0, 1);
   archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
   archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);

@@ -182,6 +182,9 @@ Limit limit_passed(unsigned v, double value) {
   if (value < row.min) return {"at least", "%s = %s: it must be at least %s.", row.min};
   if (v == slope && value >= row.max)  // a road is never upright
     return {"less than", "%s = %s rad: it must be less than %s.", row.max};
+  if ((v == psi_start || v == phi_start || v == slope_direction) && std::fabs(value) > largest_angle)
+    return {value > 0 ? "at most" : "at least", "%s = %s rad: beyond %s rad an angle has too few digits.",
+            std::copysign(largest_angle, value)};
   return value > row.max ? Limit{"at most", "%s = %s: it must be at most %s.", row.max} : Limit{};
 }
 

@@ -134,7 +134,7 @@ def test_forces_and_moments_have_no_limits_in_the_description_and_the_library_re
     w = wheel().start(guided=True)
     assert [w.set(**{name: 1e301}) for name in INPUTS] == [DISCARD] * len(INPUTS)
     assert [w.set(**{name: 1e299}) for name in loads] == [OK] * len(loads)
-    assert (w.set(M_brake=-1e-9), w.set(M_3=-1e-9)) == (DISCARD, OK)
+    assert (w.put(M_brake=0.0).set(M_brake=-1e-3), w.set(M_3=-1e-3)) == (DISCARD, OK)
 
 
 def test_the_header_and_the_capabilities_are_those_of_the_library(description, xml):
@@ -179,6 +179,7 @@ def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_
     start, now = depends["InitialUnknowns"], depends["Outputs"]
     assert start["theta"] == {"theta_start"} and start["Z_O"] == {"r_0", "r", "theta_start"}
     assert start["tau"] > {*INPUTS, "s", "friction_law", "omega_s", "J_x", "J_y", "g"}
+    assert start["M_guide_1"] > {"M_3", "M_brake", "s", "omega_s", "mu_max"} < start["lambda_1"]  # where a slide begins
     rates = {"psi_dot_guide", "theta_dot_guide"}
     assert now["lambda_3"] > {*INPUTS} - {"psi_dot_guide"} and "psi_dot_guide" not in now["lambda_3"]
     assert now["theta"] == {"theta"} and now["omega_z"] == {"omega_z", *rates}
@@ -195,12 +196,15 @@ def test_the_description_lists_exactly_the_dependencies_that_are_measured_which_
 HELD = {"phi_dot_start": 0.0, "s": 0.03, "M_brake": 300.0}
 ROLLING = {"phi_dot_start": -3.0, "s": 0.03, "M_brake": 3.0}
 SLIDING = {"mu_max": 9.0, "mu_slide": 0.3, "slip_x_start": 0.1, "slip_y_start": 0.1}
+SLIPPERY = {"mu_max": 0.3, "mu_slide": 0.2}
+JUMPS = {"F_X": 40.0, "F_Y": -60.0, "M_3": 20.0}
+SWING = {"psi_dot_guide": -1.0, "theta_dot_guide": 0.8}
 LIFTED = {"F_Z": 400.0, "keep_contact": True}
 STARTS_OFF = {"theta_start": 1.1, "psi_start": 0.7, "phi_start": 0.4, "J_x": 0.7, "J_y": 1.2, "F_X": 2.0, "M_3": 1.0}
 
 
 @pytest.mark.parametrize("guided", [False, True], ids=["free", "guided"])
-@pytest.mark.parametrize("contact", [{}, SLIDING, LIFTED], ids=["grips", "slides", "pulled"])
+@pytest.mark.parametrize("contact", [{}, SLIDING, SLIPPERY, LIFTED], ids=["grips", "slides", "begins", "pulled"])
 @pytest.mark.parametrize("axle", [HELD, ROLLING, HELD | {"friction_law": 2}], ids=["held", "rolling", "regularized"])
 def test_in_every_mode_outputs_follow_at_once_only_inputs_that_the_description_declares(
     wheel, description, guided, contact, axle
@@ -208,6 +212,9 @@ def test_in_every_mode_outputs_follow_at_once_only_inputs_that_the_description_d
     """A master that orders its calls by them would else read an output before what it depends on is set."""
     declared = {u.variable.name: {v.name for v in u.dependencies} for u in description.outputs}
     w = wheel().start(**STARTS_OFF | axle | contact, guided=guided)
+    if contact in (SLIDING, SLIPPERY):
+        w.put(**JUMPS | (SWING if guided else {}))
+        assert w.get("contact_mode") == [1]
     moved = np.abs(w.jacobian([*declared], INPUTS)) > 1e-9
     follows = {name: {INPUTS[k] for k in np.flatnonzero(row)} for name, row in zip(declared, moved, strict=True)}
     assert {name: found - declared[name] for name, found in follows.items() if found - declared[name]} == {}

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import DERIVATIVES, ERROR, OK, STATES, FMU2Wheel, shifted
+from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, ERROR, OK, STATES, FMU2Wheel, shifted
 from wheelfmu.truth.scenes import AT_REST
 
 RHO = 0.35
@@ -187,3 +187,50 @@ def test_wrong_input_derivatives_are_refused_as_a_whole(wheel):
         assert w.said().startswith("fmi2SetRealInputDerivatives: ")
     assert w.serialized() == before
     assert call(force, 3, 1.0) == OK and w.serialized() != before
+
+
+# Of an input, its polynomial up to half the step and to its end, and what the message has of it.
+PASSED: list[tuple[str, list[float], str]] = [
+    ("M_brake", [0.0, 1.7e308, 8e307], "M_brake would become inf: it must be at most 1e+300."),
+    ("F_X", [1e300, -4e299, 1e299], ""),
+    ("F_X", [9e299, 4e299, -2e299], "F_X would become 1.1e+300: it must be at most 1e+300."),
+    ("M_3", [0.0, -1.5e300, 1e300], ""),
+    ("M_3", [0.0, -5e300, 5e300], "M_3 would become -1.25e+300: it must be at least -1e+300."),
+    ("psi_dot_guide", [0.0, 1.1e7], "psi_dot_guide would become 11000000: it must be at most 10000."),
+    ("psi_dot_guide", [0.0, 9e3], ""),
+    ("theta_dot_guide", [-1e4, -1e-3], "theta_dot_guide would become -10000.001: it must be at least -10000."),
+    ("M_brake", [1.0, -2.0], ""),
+]
+
+
+@pytest.mark.parametrize(("name", "polynomial", "text"), PASSED)
+def test_a_step_in_which_an_input_would_leave_its_bounds_is_refused_and_leaves_the_state(wheel, name, polynomial, text):
+    """At its end or on the way; a brake that falls to zero stays there."""
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5).give({name: tuple(polynomial)})
+    before = w.serialized()
+    status = w.step(1.0)
+    if not text:  # where a force is too large for a solver, that is another message
+        assert not any("would become" in said for said in w.texts())
+        return
+    assert status == ERROR and w.said() == f"fmi2DoStep by 1 s: {text}"
+    assert w.serialized() == before and w.give({name: (0.0,)}).by(1.0).serialized() != before
+
+
+@pytest.mark.parametrize("name", ["M_brake", "F_Z", "psi_dot_guide", "theta_dot_guide"])
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("size", [0.5, -2.0, 3e4, 1.1e7, 1e301, 2e307])
+def test_a_state_after_a_step_with_derivatives_of_any_size_is_taken(wheel, name, order, size):
+    w = wheel().start(guided=True, s=0.01).give({name: (0.0,) * order + (size,)})
+    w.step(0.5)
+    blob = w.serialized()
+    assert wheel().start().back(blob).serialized() == blob
+
+
+def test_a_brake_below_zero_by_rounding_is_none(wheel):
+    """By a millionth of the capacity, or of 1 N m: masters set so much less to form a difference quotient."""
+    for capacity, less in ((0.0, 1e-6), (0.5, 1e-6), (300.0, 3e-4)):
+        w = wheel().start(M_brake=capacity)
+        assert w.put(M_brake=-less).get("M_brake") == [0.0]
+        w.put(M_brake=capacity)
+        assert w.set(M_brake=-1.01 * less) == DISCARD and w.get("M_brake") == [capacity]
+    assert wheel().start(M_brake=-1e-7).get("M_brake") == [0.0]

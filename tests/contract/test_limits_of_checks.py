@@ -2,7 +2,11 @@
 time reached and of the stop time; warnings where they must not appear; how many digits a message writes.
 """
 
+import os
 import re
+import shutil
+import subprocess
+import sys
 from math import pi
 
 import numpy as np
@@ -219,6 +223,40 @@ def test_a_number_is_written_with_the_fewest_digits_from_15_on_that_read_back(wh
         assert written == f"{number:.{digits}g}"
         lengths.add(digits)
     assert lengths == {15, 16, 17}
+
+
+LOCALE = """LC_NUMERIC
+decimal_point "<U066B>"
+thousands_sep ""
+grouping -1
+END LC_NUMERIC
+"""
+LOGS = """
+import locale, sys
+from ctypes import c_double
+from wheelfmu.truth.motion import Library
+locale.setlocale(locale.LC_NUMERIC, sys.argv[1])
+w = Library(sys.argv[2]).wheel().start()
+w.set(s=-0.125), w.set(s=-2.5e-300), w.set(s=-3.0), w.set(F_X=float("nan"))
+print(locale.localeconv()["decimal_point"], *w.texts(), sep="\\n")
+"""
+
+
+def test_a_message_has_a_decimal_point_whatever_that_of_the_locale_is(fmu, tmp_path):
+    """Also one of two bytes."""
+    (tmp_path / "comma").write_text(LOCALE, encoding="ascii")
+    localedef = ["localedef", "--no-archive", "-c", "-i", tmp_path / "comma", "-f", "UTF-8", tmp_path / "xx.utf8"]
+    if not shutil.which("localedef"):
+        pytest.skip("no localedef: this machine makes no locale")
+    subprocess.run(localedef, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)  # it warns, status 1
+    said = {}
+    for name in ("C", str(tmp_path / "xx.utf8")):
+        command = [sys.executable, "-P", "-c", LOGS, name.rpartition("/")[2], fmu]
+        environment = os.environ | {"LOCPATH": str(tmp_path), "PYTHONUTF8": "1"}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        point, *said[point] = done.stdout.splitlines()
+    assert {*said} == {".", "\u066b"}
+    assert said["."] == said["\u066b"] and "s = -0.125:" in said["."][0]
 
 
 @pytest.mark.parametrize("start", [999_990.0, 1_000_010.0, -999_990.0, -1_000_010.0])

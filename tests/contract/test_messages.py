@@ -112,6 +112,10 @@ def calls(library: Library) -> Iterator[Case]:
         (START, 2.0, "to 9.25 s: the stop time is 8.5 s."),
     ):
         yield answer("DoStep", t, h, 0), f"fmi2DoStep {text}"
+    w.give({"M_brake": (1.0, 0.0, 0.0, 1e301)})
+    text = f"by 0.5 s: M_brake would become {1e301 / 8}: it must be at most 1e+300."
+    yield answer("DoStep", START, 0.5, 0), f"fmi2DoStep {text}"
+    w.give({"M_brake": (0.0,)})
     theta, force = w.refer("theta"), w.refer("F_X")
     text = "no variable of this type has the value reference 999."
     yield answer("GetReal", [999], 1, [0]), f"fmi2GetReal: {text}"

@@ -191,3 +191,21 @@ def test_a_state_that_slides_although_its_wheel_cannot_is_refused(wheel):
         assert (w.restore(signed([*words[:contact], 1, *words[contact + 1 :]])) == OK) == taken
         assert taken or w.said() == "fmi2SetFMUstate: a number is out of its bounds."
         assert taken or w.by(0.01).get("contact_mode") == [0]
+
+
+EXTREME = {"guided": True, "theta_start": 1.5, "phi_dot_start": 0.0, "m": 1e-9, "r_0": 1e-3, "r": 0.0, "s": 1e-5}
+EXTREME |= {f"J_{axis}": moment for axis, moment in zip("xyz", (5e-16, 5e-16, 1e-15), strict=True)}
+
+
+LOADS = [{"M_brake": 1e300}, {"M_brake": 1e300, "F_Z": -1e300}, {"F_Z": 1e300}, {"M_1": 1e300}]
+
+
+@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("law", [{}, {"friction_law": 2}, {"mu_max": 1.0, "mu_slide": 0.5}])
+@pytest.mark.parametrize("guided", [True, False])
+def test_whatever_loads_a_wheel_its_own_state_is_taken(wheel, load, law, guided):
+    w = wheel().start(**EXTREME | law | {"guided": guided}).put(**load)
+    for _ in range(2):
+        w.step(1e-3)
+        blob = w.serialized()
+        assert wheel().back(blob).serialized() == blob

@@ -3,11 +3,12 @@
 Random wheels whose axle turns as prescribed, under loads and each law; frames of wheel_equations.h.
 """
 
-from ctypes import byref
+from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from scipy.integrate import solve_ivp
+from support.bounds import absolute_error, beyond, within
 
 from wheelfmu.fmu import equations as eq
 from wheelfmu.truth.paper_transcription import Carried, dynamics_of, set_rolling, solved
@@ -91,3 +92,71 @@ def test_accelerations_reactions_and_the_carriers_moments_are_those_of_24(law: i
         other = apart(eq.dynamics_each(form, wrong, y), want, scenes)
         if law != eq.HELD or slides:
             beyond(other, 1e-9, "distance with another inertia and coefficient")
+
+
+def jump(scene: eq.Scene, psi_dot: float, theta_dot: float, motion: eq.Motion) -> None:
+    eq.LIBRARY.wheel_jump(byref(scene), c_double(0.0), c_double(psi_dot), c_double(theta_dot), byref(motion))
+
+
+def ramp_followed(scene: eq.Scene, before: eq.Motion, psi_dot: float, theta_dot: float) -> list[float]:
+    """Newton and Euler of a sliding wheel on a ramp so steep that nothing else counts: slip and omega_z behind it."""
+    w, sine, cosine = scene.wheel, np.sin(before.theta), np.cos(before.theta)
+    d_1, d_2 = theta_dot - before.theta_dot, (psi_dot - before.psi_dot) * sine
+    rho, eta, N = w.r_0 + w.r * sine, w.r * cosine, w.m * w.r_0 * cosine * d_1
+    spin = before.phi_dot + before.psi_dot * cosine
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        f_x, f_y = -scene.mu_slide * N * y[:2] / np.hypot(*y[:2])
+        omega_dot = (rho * f_x - w.s * N * np.sign(y[2])) / w.J_z
+        return [f_x / w.m - eta * d_2 + rho * omega_dot, f_y / w.m + (w.r_0 * sine + w.r) * d_1, omega_dot]
+
+    start = [before.slip_x, before.slip_y, spin]
+    return solve_ivp(rates, (0, 1), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1].tolist()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_jump_of_a_sliding_wheel_is_the_ramp_of_newton_and_euler(seed: int) -> None:
+    """Pressed and relieved, while it spins and slides on: to twelve digits."""
+    random = np.random.default_rng(seed)
+    scene = eq.scene(eq.paper_wheel(s=random.uniform(0, 0.03)), kind=eq.ROLLING, sigma=1)
+    scene.guided, scene.contact, scene.mu_slide = 1, 1, random.uniform(0.1, 0.8)
+    slip, theta = random.uniform(0.7, 2, 2) * random.choice([-1, 1], 2), random.uniform(0.9, 2.2)
+    before = eq.Motion(0.3, theta, 0, *random.uniform(-0.3, 0.3, 2), random.uniform(12, 20), 0, 0, *slip)
+    psi_dot, theta_dot = random.uniform(-0.8, 0.8, 2)
+    after = eq.Motion.from_buffer_copy(before)
+    jump(scene, psi_dot, theta_dot, after)
+    want = ramp_followed(scene, before, psi_dot, theta_dot)
+    found = [after.slip_x, after.slip_y, after.phi_dot + psi_dot * np.cos(theta)]
+    within(absolute_error(found, want), 2e-11, "slip, m/s, and spin, rad/s, apart")
+    scene.mu_slide *= 1.001
+    other = ramp_followed(scene, before, psi_dot, theta_dot)
+    beyond(absolute_error(found, other), 1e-7, "with a thousandth more friction")
+
+
+@pytest.mark.parametrize("slides", [0, 1], ids=["rolls", "slides"])
+@pytest.mark.parametrize("theta_dot", [1.5, -1.0], ids=["pressed", "relieved"])
+@pytest.mark.parametrize("phi_dot", [0.0, 0.02, -0.02, -8.0])
+@pytest.mark.parametrize("theta", [1.2, 1.9])
+def test_a_jump_under_a_narrow_law_is_that_under_the_exact_one(theta, phi_dot, theta_dot, slides) -> None:
+    """Also where it releases a standing wheel, stops a spin or turns it round."""
+    found = []
+    for law in ({"kind": eq.ROLLING, "sigma": 1}, {"kind": eq.REGULARIZED, "omega_s": 1e-9}):
+        scene = eq.scene(eq.paper_wheel(s=0.01), **law)
+        scene.guided, scene.contact, scene.mu_slide = 1, slides, 0.4
+        motion = eq.Motion(0.3, theta, 0, 0, 0, phi_dot, 0, 0, 0.5 * slides, -0.3 * slides)
+        jump(scene, 0.5, theta_dot, motion)
+        found.append([motion.phi_dot, motion.slip_x, motion.slip_y])
+    within(absolute_error(*found), 3e-8, "apart, SI")
+    beyond(abs(found[0][0] - phi_dot), 1e-3, "change of phi_dot by the jump, rad/s")
+
+
+@pytest.mark.parametrize("push", [0.0, 0.2, -0.2])
+def test_a_slip_that_a_jump_stops_stays_stopped_where_friction_holds_it(push: float) -> None:
+    scene = eq.scene(eq.paper_wheel(s=0.01), kind=eq.ROLLING, sigma=-1)
+    scene.guided, scene.contact, scene.mu_slide = 1, 1, 6.0
+    motion = eq.Motion(0, 1.2, 0, 0, 0, -8.0, 0, 0, 0.02, -0.3)
+    jump(scene, push, 1.5, motion)
+    assert (motion.slip_x, motion.slip_y) == (0, 0)
+    motion.slip_y, scene.mu_slide = -0.3, 0.3
+    jump(scene, push, 3.0, motion)
+    beyond(motion.slip_y, 0.1, "slip with less friction, m/s")

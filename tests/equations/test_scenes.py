@@ -10,7 +10,6 @@ import pytest
 
 from wheelfmu.fmu import equations as eq
 
-MOTION = eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0)
 MEANT = [{"kind": eq.FRICTIONLESS}, {"kind": eq.ROLLING, "sigma": -1}, {"kind": eq.ROLLING, "sigma": 1, "brake": 5.0}]
 MEANT += [{"kind": eq.HELD, "sigma": 0, "omega_s": 0}, {"kind": eq.REGULARIZED, "omega_s": 1e-6}]
 NOT_MEANT = [{"kind": kind} for kind in (eq.NO_LAW, 17)]
@@ -20,23 +19,39 @@ NOT_MEANT += [{"kind": eq.ROLLING, "sigma": 1, **below} for below in ({"brake": 
 NOT_MEANT += [{"kind": eq.HELD, "brake": nan}]
 
 
-def answers(formulation: eq.Formulation, scene: eq.Scene) -> np.ndarray:
-    return eq.values(eq.dynamics(formulation, scene, eq.start(formulation, scene.wheel, MOTION)))
+FORMS = {"reduced": eq.REDUCED, "multibody": eq.MULTIBODY}
+FORMS |= {"sliding": eq.SLIDING, "multibody, sliding": eq.MULTIBODY_SLIDING}
+each_form = pytest.mark.parametrize("form", FORMS)
+carriers = pytest.mark.parametrize("guided", [0, 1], ids=["free", "guided"])
 
 
+def answers(form: str, scene: eq.Scene, guided: int) -> np.ndarray:
+    """Accelerations and forces, as they are read and as a solver gets them."""
+    scene.guided = guided
+    scene.contact, scene.mu_slide = ("sliding" in form), 0.3
+    slip = (0.4, -0.2) if "sliding" in form else (0, 0)
+    y = eq.start(FORMS[form], scene.wheel, eq.Motion(1, 1.2, 0.3, 0.5, -0.2, -2, 0, 0, *slip))
+    rates = eq.derivative(FORMS[form], scene, y)
+    return np.array([*eq.values(eq.dynamics(FORMS[form], scene, y)), *rates[1:4], *rates[8:]])
+
+
+@carriers
+@each_form
 @pytest.mark.parametrize("choice", MEANT, ids=str)
-def test_a_scene_that_is_meant_has_finite_answers(formulation: eq.Formulation, choice: dict) -> None:
+def test_a_scene_that_is_meant_has_finite_answers(form: str, guided: int, choice: dict) -> None:
     scene = eq.scene(eq.paper_wheel(s=0.03), **choice)
     assert scene.friction.kind == choice["kind"]
-    assert np.isfinite(answers(formulation, scene)).all()
+    assert np.isfinite(answers(form, scene, guided)).all()
 
 
+@carriers
+@each_form
 @pytest.mark.parametrize("choice", NOT_MEANT, ids=str)
-def test_a_scene_that_is_not_meant_answers_nan(formulation: eq.Formulation, choice: dict) -> None:
+def test_a_scene_that_is_not_meant_answers_nan(form: str, guided: int, choice: dict) -> None:
     law = {name: value for name, value in choice.items() if name != "s"}
     scene = eq.scene(eq.paper_wheel(s=choice.get("s", 0.03)), **law)
     assert scene.friction.kind == eq.NO_LAW
-    assert np.isnan(answers(formulation, scene)).all()
+    assert np.isnan(answers(form, scene, guided)).all()
 
 
 def test_a_scene_without_a_load_has_none() -> None:

@@ -400,6 +400,17 @@ def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Li
     beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
 
 
+def test_rates_that_are_held_never_break_the_grip_and_their_derivatives_do(library: Library) -> None:
+    """Leaned by 20 rad/s2, which needs a friction coefficient of 0.7, in steps of 0.1 to 10 ms."""
+    for h in (1e-4, 1e-3, 1e-2):
+        for order, slides in ((0, 0), (1, 1)):
+            w = library.wheel().start(**UPRIGHT | {"guided": True, "mu_max": 0.3, "mu_slide": 0.25})
+            for k in range(round(0.05 / h)):
+                w.give({"theta_dot_guide": (20 * k * h, 20.0)[: 1 + order]}).by(h)
+                assert w.get("contact_mode") == [slides], (h, order, k)
+            beyond(w.get("theta_dot")[0], 0.7, "rate reached, rad/s")
+
+
 @pytest.mark.parametrize("order", [0, 1])
 def test_a_course_in_steps_comes_near_to_the_whole_with_its_order(library: Library, order: int) -> None:
     """Held at the rate that leads to the heading asked for next, or with its first derivative."""

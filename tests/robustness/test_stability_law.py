@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import OK, Values
+from wheelfmu.fmu.driver import OK, Array, Values
 from wheelfmu.truth.measure import ROUGH as FRICTION
 from wheelfmu.truth.measure import TIMES, error_against, law_error
 from wheelfmu.truth.motion import Library, Run, run
@@ -63,6 +63,53 @@ def test_a_spin_that_a_stiff_law_balances_far_out_in_its_layer_stays_there(wheel
     steep = np.cosh(x) ** 2  # of the width by the torque, whose rounding shifts the balance
     within(drift(np.tanh(x)), min(1e-6, 16 * steep * EPSILON), "drift of the spin in widths of the law")
     beyond(drift(0.5 * np.tanh(x)), 2, "drift under half the torque, in widths")
+
+
+WIDTHS = np.logspace(1, -6, 29)
+GUIDED: Values = {"guided": True, "theta_start": np.pi / 2, "psi_start": 0.0, "phi_dot_start": -3.0, "s": 0.01}
+
+
+def slowing(brake: float) -> float:
+    """By the exact law, rad/s2."""
+    return (0.01 * 20 * 9.81 + brake) / (1.8 + 20 * 0.35**2)
+
+
+def stopping(omega_s: float, a: float, times: Array) -> Array:
+    """Upright, from -3 rad/s: sinh(omega_z / omega_s) falls as exp(-a t / omega_s), by its logarithm; rad/s."""
+    x = 3.0 / omega_s
+    log_sinh = x + np.log1p(-np.exp(-2 * x)) - np.log(2) - a * times / omega_s
+    return -omega_s * np.where(log_sinh > 20, log_sinh + np.log(2), np.arcsinh(np.exp(np.minimum(log_sinh, 20))))
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("brake", [0.0, 5.0, 60.0, 200.0])
+def test_passage_and_rest_follow_the_closed_form_at_every_width(library: Library, brake: float, tolerance: float):
+    """From widths far above the spin to those that only the exact law resolves, at a cost that changes little between
+    neighbours."""
+    a = slowing(brake)
+    times, errors, costs, others = np.linspace(0, 9 / a, 61), {}, [], []
+    for omega_s in WIDTHS:
+        law = GUIDED | {"M_brake": brake, "friction_law": "regularized", "omega_s": omega_s}
+        done, exact = run(library, law, times, tolerance), stopping(omega_s, a, times)
+        errors[f"width {omega_s:.2g} rad/s"] = absolute_error(done["omega_z"], exact) / 3
+        costs.append(done.counters["n_rhs"])
+        others.append(absolute_error(stopping(omega_s, 1.01 * a, times), exact) / 3)
+    within(errors, 10 * tolerance, "error of the spin, relative to its start")
+    beyond(min(others), 10 * tolerance, "that of a hundredth more friction")
+    within(max(np.abs(np.diff(np.log(costs)))), np.log(3), "logarithm of the evaluations, neighbouring widths apart")
+
+
+def test_a_tighter_tolerance_is_no_less_exact_where_a_rolling_wheel_passes_the_law(library: Library) -> None:
+    start = {"s": 0.0191, "theta_start": 1.5996, "phi_dot_start": -2.0432, "psi_dot_start": 1.7306}
+    law: Values = {**start, "theta_dot_start": -0.1968, "friction_law": "regularized", "omega_s": 0.01}
+    times, way = np.linspace(0, 5, 51), lambda done: np.column_stack([done["X_O"], done["Y_O"]])
+    exact = way(run(library, law, times, 1e-12))
+    grown = absolute_error(way(run(library, law | {"phi_dot_start": -2.0432 + 1e-7}, times, 1e-12)), exact) / 1e-7
+    for tolerance in (1e-6, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9):
+        off = absolute_error(way(run(library, law, times, tolerance)), exact)
+        within(off / tolerance / grown, 10, f"error over tolerance {tolerance} and growth")
+    other = absolute_error(way(run(library, law | {"omega_s": 0.0101}, times, 1e-9)), exact)
+    beyond(other / 1e-6 / grown, 10, "that of a width one per cent larger")
 
 
 def random_law(seed: int) -> tuple[Values, float]:
@@ -144,11 +191,12 @@ def test_a_spin_that_settles_takes_the_multibody_form_and_the_slip_with_it(wheel
 
 
 def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
-    def evaluations(omega_s: float) -> int:
-        return wheel().start(**FRICTION, friction_law="regularized", omega_s=omega_s).to(10.0).get("n_rhs")[0]
+    def evaluations(omega_s: float, tolerance: float = 1e-8) -> int:
+        law = {"friction_law": "regularized", "omega_s": omega_s, "tolerance": tolerance}
+        return wheel().start(**FRICTION, **law).to(10.0).get("n_rhs")[0]
 
     within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
-    beyond(evaluations(7e-4) / evaluations(1e-2), 1.5, "growth where the law is not yet solved by its layer")
+    beyond(evaluations(1e-9, 1e-11) / evaluations(1e-5), 1.5, "growth with the tolerance too")
 
 
 def steps_to_and_fro(wheel, **law: str | float) -> int:

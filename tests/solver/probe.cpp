@@ -103,7 +103,7 @@ solver::Problem problem_of(Probe* probe) {
   p.near = 0.1;
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   if (s.kind == steep)
-    p.steep = {1, solver::Settling::none, slopes_of_steep};
+    p.steep = {1, solver::Settling::none, slopes_of_steep, width};
   else if (s.kind >= settling)
     p.turning = {1, 0, slopes_of_turning};
   return p;

@@ -9,8 +9,8 @@ from wheelfmu.fmu.driver import Values
 
 NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
 TRIANGLE = "kg m2: none may exceed the sum of the other two."
-STANDS = "the wheel must stand above the ground, 0 < theta < 3.14159."
-STEADY = "a guided wheel needs 0 for both."
+STANDS = "the wheel must stand, more than 1e-07 rad from lying flat at 0 and at pi."
+STEADY = "a guided wheel needs 0 for both; by co-simulation psi_dot_guide and theta_dot_guide turn it."
 CARRIER = "only the carrier of a guided wheel turns, by co-simulation; else they and their derivatives must be 0."
 REFUSALS: list[tuple[Values, str, Values]] = [
     ({"m": nan}, f"m = nan: {NUMBER}", {"m": 1e-3}),
@@ -24,11 +24,13 @@ REFUSALS: list[tuple[Values, str, Values]] = [
     ),
     ({"J_x": 3.0}, f"J_x, J_y, J_z = 3, 0.9, 1.8 {TRIANGLE}", {"J_x": 0.95}),
     ({"J_z": 1.8 * (1 + 1e-11)}, f"J_x, J_y, J_z = 0.9, 0.9, 1.8 {TRIANGLE}", {"J_z": 1.8 * (1 + 2e-16)}),
+    ({"J_x": -1.0}, f"J_x = -1: {ABOVE}", {"J_x": 0.95}),
     ({"g": -9.81}, "g = -9.81: it must be at least 0.", {"g": 1e-300}),
     ({"s": -0.03}, "s = -0.03: it must be at least 0.", {"s": 0.0}),
     ({"slope": pi / 2}, "slope = 1.57079633 rad: it must be less than 1.5708.", {"slope": pi / 2 * (1 - 1e-12)}),
     ({"psi_start": -inf}, f"psi_start = -inf: {NUMBER}", {"psi_start": 7.0}),
     ({"theta_start": -0.1}, f"theta_start = -0.1 rad: {STANDS}", {"theta_start": 3.1}),
+    ({"theta_start": 1e-9}, f"theta_start = 1e-09 rad: {STANDS}", {"theta_start": 1e-6}),
     ({"theta_start": 0.0}, f"theta_start = 0 rad: {STANDS}", {"theta_start": 2e-7}),
     ({"theta_start": pi}, f"theta_start = 3.14159265 rad: {STANDS}", {"theta_start": 3.14159}),
     ({"theta_start": 0.99e-7}, f"theta_start = 9.9e-08 rad: {STANDS}", {"theta_start": 1.01e-7}),
@@ -53,7 +55,7 @@ REFUSALS: list[tuple[Values, str, Values]] = [
         for angle, both in (("psi", "0.1, 0"), ("theta", "0, 0.1"))
     ),
     (
-        {"mu_slide": 0.123456789123},
+        {"mu_slide": 0.123456789123, "mu_max": 0.0},
         "mu_slide = 0.123456789: mu_max must be at least as large, and is 0.",
         {"mu_slide": 0.4, "mu_max": 0.4, "slip_y_start": 1e-3},
     ),
@@ -62,6 +64,7 @@ REFUSALS: list[tuple[Values, str, Values]] = [
         "mu_slide = 0.4: mu_max must be at least as large, and is 0.3.",
         {"mu_slide": 0.3, "mu_max": 0.3},
     ),
+    ({"mu_max": -1.0}, "mu_max = -1: it must be at least 0.", {"mu_max": 0.6}),
     (
         {"mu_slide": 0.0, "slip_x_start": 0.5, "slip_y_start": -0.75},
         "slip_x_start, slip_y_start = 0.5, -0.75 m/s: an initial slip needs mu_slide.",
@@ -82,8 +85,13 @@ REFUSALS: list[tuple[Values, str, Values]] = [
     ),
     (
         {"phi_start": -1.0001e12},
-        "phi_start = -1.0001e+12 rad: beyond 1e+12 rad an angle has too few digits.",
+        "phi_start = -1.0001e+12 rad: beyond -1e+12 rad an angle has too few digits.",
         {"phi_start": -1e12},
+    ),
+    (
+        {"slope_direction": 1e13},
+        "slope_direction = 1e+13 rad: beyond 1e+12 rad an angle has too few digits.",
+        {"slope_direction": 1e12},
     ),
     (
         {"guided": False, "psi_dot_guide": 0.5, "theta_dot_guide": -0.75},

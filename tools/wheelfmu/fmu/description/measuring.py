@@ -56,9 +56,15 @@ SCENES: tuple[Values, ...] = (
     {**LAW, **GUIDED, "phi_dot_start": 5e-4},
     {**UNEQUAL, **GUIDED, "s": 0.03},
 )
-# Co-simulation alone slides: a slip changes what the force of the ground depends on.
+# Co-simulation alone slides: a slip changes what the force of the ground depends on, and the direction in which one
+# begins follows from all that acts. On a road that gives this share of the friction that rolling needs it begins at the
+# start, or where inputs jump: there the carrier's jump meets friction too.
 ROAD = {"mu_max": 9.0, "mu_slide": 0.1}
+TOO_LITTLE, ENOUGH = 0.995, 1.005
+PUSH: Values = {"F_X": 40.0, "F_Y": -60.0, "M_3": 20.0}
+SWING: Values = {"psi_dot_guide": -1.0, "theta_dot_guide": 0.8}
 SLIPS = ({"slip_x_start": 0.0, "slip_y_start": 0.0}, {"slip_x_start": 0.1, "slip_y_start": 0.1})
+TIGHTEST = 1e-13  # a slip begins with a speed next to zero, in proportion to the tolerance
 ROUNDING = 1e-11  # what changes less, relative to 1 + its size, has not changed: the formulation changes no more
 
 
@@ -70,7 +76,8 @@ class Unit:
         loaded.kind, self.ended = kind, False
         self.states: tuple[str, ...] = ()
         self.wheel = loaded.new()
-        statuses = [self.wheel.set(**scene), self.wheel.setupExperiment(), self.wheel.enterInitializationMode()]
+        statuses = [self.wheel.set(**scene), self.wheel.setupExperiment(tolerance=TIGHTEST)]
+        statuses += [self.wheel.enterInitializationMode()]
         statuses += [self.wheel.exitInitializationMode()] if runs else []
         self.refused = max(statuses) > WARNING
         if runs and kind == MODEL_EXCHANGE and not self.refused:
@@ -139,6 +146,16 @@ def without_zeros(loaded: FMU2Wheel, scene: Values) -> Values:
     return scene
 
 
+def roads(loaded: FMU2Wheel, scene: Values) -> Iterator[Values]:
+    """A wheel that can slide and grips, one that slides, and two at the limit of their grip."""
+    for slip in SLIPS:
+        yield {**scene, **ROAD, **slip}
+    with unit(loaded, CO_SIMULATION, {**scene, **ROAD, **SLIPS[0]}) as u:
+        needed = u.wheel.get("mu_required")[0]
+    for share in (TOO_LITTLE, ENOUGH):
+        yield {**scene, **SLIPS[0], "mu_max": share * needed, "mu_slide": 0.9 * needed}
+
+
 def event_indicators(fmu: Path) -> int:
     """How many event indicators model exchange has: the one length of array that the FMU fills."""
     with TemporaryDirectory() as folder:
@@ -163,12 +180,14 @@ def measured(fmu: Path) -> Dependencies:
         for scene in (without_zeros(loaded, changed) for changed in SCENES):
             parts, small_spin = [], scene.get("friction_law") == LAW["friction_law"]
             turning = TURNING if scene.get("guided") and not small_spin else {}
-            for slip in SLIPS:
-                driven = {**scene, **ROAD, **slip, **{f"{name}_guide": rate for name, rate in turning.items()}}
+            rates = {f"{name}_guide": rate for name, rate in turning.items()}
+            for driven in roads(loaded, {**scene, **rates}):
                 with unit(loaded, CO_SIMULATION, driven, runs=False) as u:
                     parts += [("InitialUnknowns", u.depends(description.initialUnknowns, "parameter", "input"))]
-                with unit(loaded, CO_SIMULATION, driven) as u:
-                    parts += [("Outputs", u.depends(description.outputs, "input"))]
+                for jump in ({}, PUSH | (SWING if turning else {})):
+                    with unit(loaded, CO_SIMULATION, driven) as u:
+                        u.wheel.set(**jump)
+                        parts += [("Outputs", u.depends(description.outputs, "input"))]
             with unit(loaded, MODEL_EXCHANGE, scene) as u:
                 for name, rate in turning.items():
                     u.put(name, rate)
