@@ -45,29 +45,7 @@ export function pointArrow(arrow, vector) {
   arrow.quaternion.setFromUnitVectors(THREE.Object3D.DEFAULT_UP, vector.clone().divideScalar(length));
 }
 
-const ARC = 120;  // parts of a full turn
 const SERIF = 'italic 600 $ Georgia, "Times New Roman", serif';
-
-/** A flat arrow about the axis z, from x towards y, of this radius and width in m; seen through what is before it. */
-export function makeTurn(radius, width, color) {
-  const material = new THREE.MeshBasicMaterial({color, side: THREE.DoubleSide, depthTest: false, transparent: true});
-  const band = new THREE.Mesh(new THREE.RingGeometry(radius - width / 2, radius + width / 2, ARC, 1), material);
-  const head = new THREE.Mesh(new THREE.CircleGeometry(1.3 * width, 3), material);
-  for (const part of [band, head]) part.renderOrder = 910;
-  return Object.assign(new THREE.Group().add(band, head), {userData: {band, head, radius, width}});
-}
-
-/** Bends an arrow of makeTurn by an angle in rad, below one turn; negative: the other way. */
-export function bendTurn(turn, angle) {
-  const {band, head, radius, width} = turn.userData;
-  const [size, way] = [Math.abs(angle), Math.sign(angle)];
-  const count = Math.max(0, Math.round((size - 1.3 * width / radius) / (2 * Math.PI) * ARC));  // up to the head
-  turn.visible = count > 0;
-  band.geometry.setDrawRange(way < 0 ? 6 * (ARC - count) : 0, 6 * count);
-  head.position.set(radius * Math.cos(angle), radius * Math.sin(angle), 0);
-  head.position.addScaledVector(new THREE.Vector3(Math.sin(angle), -Math.cos(angle), 0), way * 1.3 * width);
-  head.rotation.z = angle + way * Math.PI / 2;
-}
 
 /** A flat band on the ground along points [[x, y], ...], in layers one over the other. */
 export function makeRibbon(points, {width, height, layer, color, opacity}) {
