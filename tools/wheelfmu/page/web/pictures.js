@@ -53,6 +53,14 @@ export function contact(_wheel, at) {
 }
 
 /**
+ * |omega_z| above which upright straight rolling is stable, rad/s: a small lean a turns the wheel at
+ * omega_2 = (J_z / J_x) omega_z a, and (J_x + m R^2) a'' = m g r_0 a - (J_z + m R^2) omega_2 omega_z, R = r_0 + r.
+ */
+export function criticalSpin({m, g, r_0, r, J_x, J_z}) {
+  return Math.sqrt((m * g * r_0 * J_x) / (J_z * (J_z + m * (r_0 + r) ** 2)));
+}
+
+/**
  * N m per radian of lean of the wheel that rolls upright: {tips, rights}, from the accelerations that the FMU has for
  * starts beside it, values being the run's own. A lean a turns the wheel at omega_2 = -(d psi_ddot / d theta_dot) a.
  */
@@ -154,4 +162,10 @@ export function unitsOf(wheels, names) {
     }
   }
   return Object.fromEntries(Object.entries(most).map(([kind, size]) => [kind, roundUp(size / LONGEST)]));
+}
+
+/** The rate at which a fast upright wheel nutates over its spin omega_z. */
+export function nutation({m, r_0, r, J_x, J_y, J_z}) {
+  const [J, R2] = [Math.min(J_x, J_y), (r_0 + r) ** 2];
+  return Math.sqrt(J_z * (J_z + m * R2) / (J * (J + m * R2)));
 }
