@@ -184,9 +184,9 @@ export class WheelModel {
     for (const arrow of arrowsOf(this.wheel, show.pictures, t)) this.showArrow(arrow, show.units);
   }
 
-  /** An arrow of pictures.js with its name at its tip; lengths are in units of its kind. */
+  /** An arrow of pictures.js with its name at its tip; its length is in units of its kind, a length its own. */
   showArrow({name, kind, place, vector, from = [0, 0, 0], after = [0, 0, 0], color, faint = false}, units) {
-    const scale = (this.r_0 + this.r) / (units[kind] ?? Infinity);
+    const scale = kind === 'length' ? 1 : (this.r_0 + this.r) / (units[kind] ?? Infinity);
     const [length, tail] = [vector, after].map((parts) => new THREE.Vector3(...parts).multiplyScalar(scale));
     const {group, arrow, label} = this.arrows.get(name) ?? this.makeNamedArrow(name, place, color, faint);
     group.visible = true;

@@ -72,9 +72,9 @@ class Diagram {
 
   y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
-  /** Lines and numbers of both axes; the last number across has the unit. */
+  /** Lines and numbers of both axes; the last number across has the unit. Bars have no axis upward. */
   grid(pen, unit) {
-    const up = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
+    const up = this.kind.form === 'bars' ? {ticks: []} : ticksOf(this.ranges[1], Math.min(5, this.height / 26));
     const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
     pen.fillStyle = colour('--rule');
     for (const tick of up.ticks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
@@ -84,7 +84,7 @@ class Diagram {
     for (const tick of up.ticks) pen.fillText(fixed(tick, up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
-      const text = fixed(tick, across.digits) + (tick === across.ticks.at(-1) ? ` ${unit}` : '');
+      const text = fixed(tick, across.digits) + (unit && tick === across.ticks.at(-1) ? ` ${unit}` : '');
       pen.fillText(text, Math.min(this.x(tick), this.width - 14), this.height - 15);
     }
   }
@@ -152,7 +152,7 @@ class Curve extends Diagram {
       pen.clip();
       if (width === FUTURE && this.secret) continue;
       this.lines.forEach((points, k) => this.stroke(pen, k, points, width));
-      this.drawMarks(pen, width === FUTURE ? 0.5 : 1);
+      this.drawMarks(pen);
     }
   }
 
@@ -207,8 +207,7 @@ class Curve extends Diagram {
   }
 
   /** Held and sliding in two lanes on the axis, so that neither hides the other; transitions as ticks at the top. */
-  drawMarks(pen, strength) {
-    pen.globalAlpha = strength;
+  drawMarks(pen) {
     for (const {phases} of this.wheels) {
       for (const [lane, name, spans] of [[1, '--stick', phases.sticks], [2, '--slide', phases.slides]]) {
         pen.fillStyle = colour(name);
@@ -220,7 +219,6 @@ class Curve extends Diagram {
       pen.fillStyle = colour('--force');
       for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
     }
-    pen.globalAlpha = 1;
   }
 
   /** The reader's guess goes on to a place of the canvas; what stood there before goes. */
@@ -410,12 +408,12 @@ class Bars extends Diagram {
     const high = roundUp(1.02 * most);
     this.ranges = [[0, high], [0, 1]];
     pen.clearRect(0, 0, width, height);
-    this.grid(pen, 'N m');
+    this.grid(pen, '');
     const rows = wheels.flatMap((wheel) => TERMS.map((term) => [wheel, ...term]));
     const pitch = this.sizes[1] / rows.length;
-    rows.forEach(([{perRadian}, name, formula, own], i) => {
+    rows.forEach(([{label, perRadian}, name, formula, own], i) => {
       const y = TOP + i * pitch;
-      const text = rows.length > 2 ? name : `${name}  ${formula}`;
+      const text = rows.length > 2 ? `${label}: ${name}` : `${name}  ${formula}`;
       pen.fillStyle = colour(own);
       pen.fillRect(LEFT, y + 0.45 * pitch, this.along(0, perRadian[name]), 0.42 * pitch);
       Object.assign(pen, {fillStyle: colour('--ink'), textAlign: 'left', textBaseline: 'middle'});

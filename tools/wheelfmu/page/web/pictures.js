@@ -2,20 +2,20 @@
 // resistance moves forward, the velocities at the contact, the force of the ground and the moment of a wheel carrier.
 // Each is a number read off the outputs of the FMU, and an arrow of the scene. SI; carrier axes e1, e2, e3, or forward
 // (along e1), left and up.
-import {roundUp} from '#table';
+import {extent, roundUp} from '#table';
 
-export const GHOST = 0.3;     // s: how far ahead the turned axle is drawn
-const LONGEST = 1.3;          // radii of the wheel, of an arrow
-const SAMPLES = 200;          // of a motion, for the scale of its arrows
-const SMALL = 1e-4;           // of a start, from upright rolling
+export const GHOST = 0.3;      // s: how far ahead the turned axle is drawn
+const [USUAL, LONGEST] = [1.3, 4.5];  // radii of the wheel: an arrow of the mean square, and the longest
+const SAMPLES = 200;    // of a motion, for the scale of its arrows
+const SMALL = 1e-4;     // of a start, from upright rolling
 const UPRIGHT = Math.PI / 2;
 
-/** Units of the kinds of arrows. */
+/** Units of the kinds of arrows; a length is drawn as it is. */
 export const KINDS = {
   momentum: 'kg m²/s',
   moment: 'N m',
   force: 'N',
-  speed: 'm/s'
+  speed: 'm/s',
 };
 
 /** rho = r_0 + r sin theta and eta = r cos theta: the contact is at -rho e2 - eta e3 from the centre. */
@@ -99,10 +99,14 @@ export const PICTURES = {
       ({J_x, J_y, guided}) => J_x === J_y && !guided),
   resistance: picture(
       ['tau', 'lambda_3'],
-      (_wheel, at) => {
+      (wheel, at) => {
         const [N, tau] = [at('lambda_3'), at('tau') - at('tau_brake')];
         const from = [N > 0 ? tau / N : 0, 0, 0];
-        return [{name: 'N', kind: 'force', place: 'contact', vector: [0, 0, N], from, color: '--force'}];
+        const own = {place: 'contact', color: '--force'};
+        return [
+          {...own, name: 'N', kind: 'force', vector: [0, 0, N], from},
+          {...own, name: 's', kind: 'length', vector: from, from: [0, -0.5 * wheel.r_0, 0.02 * wheel.r_0]},
+        ];
       }),
   sliding: picture(
       ['v_x', 'v_y', 'slip_x', 'slip_y'],
@@ -111,8 +115,8 @@ export const PICTURES = {
         const beside = (part) => [0, part * (wheel.r_0 + wheel.r), 0.02 * wheel.r_0];
         const own = {kind: 'speed', place: 'contact'};
         return [
-          {...own, name: 'v', vector: [...v, 0], from: beside(0.3), color: '--v'},
-          {...own, name: 'R ω_z', vector: [...turn, 0], after: [...v, 0], from: beside(0.42), color: '--turn'},
+          {...own, name: 'v', vector: [...v, 0], from: beside(-0.45), color: '--v'},
+          {...own, name: 'R ω_z', vector: [...turn, 0], after: [...v, 0], from: beside(-0.75), color: '--turn'},
           {...own, name: 'slip', vector: [...slip, 0], from: beside(0), color: '--slide'},
         ];
       }),
@@ -151,17 +155,21 @@ export function arrowsOf({table, parameters}, names, t) {
 
 /** {kind: what an arrow as long as the radius stands for}: one for all wheels and their whole motion. */
 export function unitsOf(wheels, names) {
-  const most = {};
+  const found = {};
   for (const wheel of wheels) {
     const {start, end} = wheel.table;
     for (let i = 0; i <= SAMPLES; ++i) {
       for (const {kind, vector} of arrowsOf(wheel, names, start + i / SAMPLES * (end - start))) {
         const size = Math.hypot(...vector);
-        if (size > (most[kind] ?? 1e-12)) most[kind] = size;
+        if (kind in KINDS && size > 1e-12) (found[kind] ??= []).push(size);
       }
     }
   }
-  return Object.fromEntries(Object.entries(most).map(([kind, size]) => [kind, roundUp(size / LONGEST)]));
+  const unit = (sizes) => {
+    const square = sizes.reduce((sum, size) => sum + size ** 2, 0) / sizes.length;
+    return roundUp(Math.max(Math.sqrt(square) / USUAL, extent(sizes)[1] / LONGEST));
+  };
+  return Object.fromEntries(Object.entries(found).map(([kind, sizes]) => [kind, unit(sizes)]));
 }
 
 /** The rate at which a fast upright wheel nutates over its spin omega_z. */

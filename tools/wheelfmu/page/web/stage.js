@@ -9,8 +9,9 @@ const LENS = 34;    // degrees, from top to bottom
 // Where the eye stands beside what it looks at, in sizes of the scene; but for `beside`, X is the heading.
 const EYES = {
   beside: [1.5, -2.35, 1.0],
-  behind: [-2.3, -1.7, 1.1],
-  abreast: [0.35, -2.75, 0.75]
+  behind: [-2.1, 1.7, 1.15],
+  abreast: [0.3, -2.2, 0.55],
+  above: [0.2, -2.3, 1.7]
 };
 const SUN = new THREE.Vector3(1.4, -1.1, 3.6);  // where it stands, in sizes of the scene
 

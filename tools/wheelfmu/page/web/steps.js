@@ -138,12 +138,12 @@ export function stepsOf() {
     },
     {
       title: 'Held, but nodding and turning',
-      start: {...PAPER, s: 0.03},
+      start: {...PAPER, s: 0.08, stop: 4},
       controls: ['s'],
       picture: 'resistance',
       diagrams: ['hold', 'energy'],
       speed: 0.25,
-      at: 1.1,
+      at: 1,
       axes: true,
       text: (wheel) => `Rolling resistance holds the turn about the axle e<sub>3</sub> and no other. So the held wheel nods
         and turns, as a coin that pivots on a table: while it is held for the first time, for
@@ -172,7 +172,7 @@ export function stepsOf() {
       controls: ['brake', 'mu'],
       picture: 'sliding',
       diagrams: ['circle', 'speeds'],
-      eye: 'abreast',
+      eye: 'above',
       speed: 0.25,
       text: (wheel) => {
         const {slides: [[begin, end]], sticks: [[locked]]} = wheel.phases;
@@ -191,7 +191,7 @@ export function stepsOf() {
       controls: ['spin', 'mu'],
       picture: 'sliding',
       diagrams: ['speeds', 'circle'],
-      eye: 'abreast',
+      eye: 'above',
       speed: 0.5,
       text: (wheel) => {
         const end = wheel.phases.slides[0][1];
