@@ -8,7 +8,10 @@ const LEANING = 10 / DEGREES;  // rad, up to which the critical spin of upright 
 const UPRIGHT = Math.PI / 2;
 const HOLD = ['tau', 'omega_z_dot', 'theta', 'lambda_3', 's', 'M_brake'];
 
-/** A curve over time: the columns it needs, and its values from theirs and the wheel; of several all but one are dashed. */
+/**
+ * A curve over time: the columns it needs, and its values from theirs and the wheel, of which the second is dashed.
+ * band: the second is the limit of a band about zero; whole: the axis while the future is a secret.
+ */
 const curve = (title, unit, digits, columns, what, values, more) =>
     ({form: 'time', title, unit, digits, columns, what: `${what} over time. Click or drag to go there`, values, ...more});
 
@@ -26,7 +29,7 @@ const moves = ({table}, name) => {
 export const CURVES = {
   lean: curve(
       'lean 90° − θ', '°', 1, ['theta'], 'Lean: angle of the wheel to the vertical, 90° where it lies flat,',
-      ([theta]) => [90 - DEGREES * theta], {fits: (wheel) => moves(wheel, 'theta')}),
+      ([theta]) => [90 - DEGREES * theta], {fits: (wheel) => moves(wheel, 'theta'), whole: [0, 90]}),
   spin: curve('spin −ω_z', 'rad/s', 3, ['omega_z'], 'Spin: angular velocity about the axle, positive where it rolls forward,',
       ([omega]) => [-omega], {
         fits: (wheel) => !brakes(wheel),

@@ -156,15 +156,20 @@ class Curve extends Diagram {
     }
   }
 
+  /** The bounds of both axes; while the future is a secret they tell nothing of it. */
   range(axis) {
-    const {start, end, t} = this.player;
-    const seen = this.lines.flat().filter(([time]) => axis !== 'held' || time <= t);
-    const spread = ([, value, most]) => (this.kind.band ? [value, most, -most] : [value, most ?? value]);
+    const {kind, player: {start, end, t}, lines} = this;
+    const seen = lines.flat().filter(([time]) => axis !== 'held' || time <= t);
+    const spread = ([, value, most]) => (kind.band ? [value, most, -most] : [value, most ?? value]);
     const [low, high] = extent([...seen.flatMap(spread), ...(this.sketch ?? []).map(([, value]) => value)]);
+    const begun = Math.max(...lines.flatMap(([first]) => first.slice(1).map(Math.abs)));
     const before = axis === 'fitted' ? null : this.ranges?.[1];
     const flat = Math.max(-low, high) < 1e-9;  // zero throughout, but for rounding, has no scale
-    const up = before ? widened(before, low, high) : flat ? [-1, 1] : bounds(low, high);
-    this.ranges = [[start, end > start ? end : start + 1], this.asks ? [0, 90] : up];
+    const open = before ? widened(before, low, high) : flat ? [-1, 1] : bounds(low, high);
+    this.ranges = [
+      [start, end > start ? end : start + 1],
+      this.secret ? kind.whole ?? bounds(-begun, begun) : open,
+    ];
   }
 
   /** The line of wheel k, with a cross where its motion ended; of a band, its limits. */
