@@ -5,9 +5,11 @@ full stop and the words of set-up that the command needs. By the standard librar
 import os
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 from wheelfmu.__main__ import needs
 
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # of the lab's commands; .venv has it once it is made
 words = needs(*sys.argv[1:])
 if words is not None:
     with suppress(OSError):

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 
 def by_fmpy(package: str, step: float, stop: float, names: list[str]) -> list[float]:
-    from wheelfmu.vehicles.ssp import run
+    from lab.vehicles.ssp import run
 
     columns = run(Path(package), step, stop, step)
     return [columns[name][-1] for name in names]

@@ -57,11 +57,6 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   wheel_reduced.dynamics(scene, reduced, out);
 }
 
-static void stop_spin(const WheelParameters* wheel, double* y) {
-  (void)wheel;
-  y[SPIN] = 0;
-}
-
 const WheelFormulation wheel_euler = {
     .states = WHEEL_REDUCED_STATES,
     .start = start,
@@ -71,6 +66,4 @@ const WheelFormulation wheel_euler = {
     .slip_index = -1,
     .kinematics = kinematics,
     .dynamics = dynamics,
-    .reduce = reduce,
-    .stop_spin = stop_spin,
 };

@@ -1,10 +1,11 @@
 // The multibody formulation behind the C header: the paper's system of equations of motion, (15)-(24), any inertia,
-// under a law of friction, as first-order system. Fixed axes for O, Euler angles for the attitude. Eigen.
+// under a law of friction, solved at a state of the reduced forms. Fixed axes for O, Euler angles for the attitude.
+// Eigen.
 //
 // Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
 // -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
 #include <Eigen/LU>
-#include <array>
+#include <algorithm>
 
 #include "paper_matrices.hpp"
 
@@ -18,39 +19,44 @@ using Matrix63 = Eigen::Matrix<double, 6, 3>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Vector2 = Eigen::Vector2d;
 
-// A state y = (q, q_dot; omega_z, the spin, in the place of phi_dot).
-enum State { X_O, Y_O, Z_O, psi, theta, phi, X_O_dot, Y_O_dot, Z_O_dot, psi_dot, theta_dot, spin };
-
-using States = std::array<double, WHEEL_MULTIBODY_STATES>;
-
-// While the wheel slides, |u| and chi stand in the place of X_O_dot and Y_O_dot.
-enum SlipState { speed = X_O_dot, chi = Y_O_dot };
+// The coordinates q, (25), in their order, which is also that of q_dot and q_ddot.
+enum Coordinate { X_O, Y_O, Z_O, psi, theta, phi };
 
 // The unknowns of (24), behind q_ddot in the order of q; and its row of the moment about the axle.
 enum Unknown { lambda_1 = 6, lambda_2, lambda_3 };
 constexpr int about_axle = 5;
 
-// The state with the matrices that (16)-(24) share.
+// Euler angles and their rates, of omega_1 = theta_dot, omega_2 = psi_dot sin(theta) and (21).
+Attitude attitude_of(const double* y) {
+  const double theta = y[WHEEL_THETA], psi_dot = y[WHEEL_OMEGA_2] / std::sin(theta);
+  const Vector3 beta_dot(psi_dot, y[WHEEL_OMEGA_1], y[WHEEL_OMEGA_3] - psi_dot * std::cos(theta));
+  return {y[WHEEL_PSI], theta, y[WHEEL_PHI], beta_dot};
+}
+
+// A state of the reduced forms with the matrices that (16)-(24) share. The velocity of O follows from the constraints,
+// (19), with the slip on their right-hand side.
 struct Multibody {
   const WheelParameters& wheel;
   double omega_z;  // (21): the sum with phi_dot would round what a narrow regularized law multiplies
   Attitude attitude;
-  Vector6 q_dot;
   Matrix3 A = paper::A(attitude), A_dot = paper::A_dot(A, attitude);
   Matrix3 Q = paper::Q(attitude), Q_dot = paper::Q_dot(attitude);
   Matrix3 r = paper::r(wheel, attitude), r_dot = paper::r_dot(wheel, attitude);
   Matrix36 B, B_dot;  // [B]{q_dot} is the velocity of the wheel's material point at the contact
+  Vector6 q_dot;
+  Vector2 d = Vector2::Zero();  // direction of the slip, fixed axes
 
-  Multibody(const WheelParameters& w, const double* y)
-      : wheel(w),
-        omega_z(y[spin]),
-        attitude{y[psi], y[theta], y[phi], {y[psi_dot], y[theta_dot], y[spin] - y[psi_dot] * std::cos(y[theta])}} {
-    q_dot << y[X_O_dot], y[Y_O_dot], y[Z_O_dot], attitude.beta_dot;
+  Multibody(const WheelParameters& w, const double* y, bool slides)
+      : wheel(w), omega_z(y[WHEEL_OMEGA_3]), attitude(attitude_of(y)) {
     const Matrix3 A_r = A * r.transpose();
     // (19): [B] = [[I] [A][r]^T[Q]]
     B << Matrix3::Identity(), A_r * Q;
     // (20)
     B_dot << Matrix3::Zero(), A_dot * r.transpose() * Q + A * r_dot.transpose() * Q + A_r * Q_dot;
+    q_dot << -B.rightCols<3>() * attitude.beta_dot, attitude.beta_dot;
+    if (!slides) return;
+    d << std::cos(y[WHEEL_PSI] + y[WHEEL_CHI]), std::sin(y[WHEEL_PSI] + y[WHEEL_CHI]);
+    q_dot.head<2>() += y[WHEEL_SLIP] * d;
   }
 };
 
@@ -85,55 +91,19 @@ Vector3 F_beta(const Multibody& s) {
   return -(inertia * s.Q_dot + s.A.transpose() * s.A_dot * inertia * s.Q) * s.attitude.beta_dot;
 }
 
-// Rate at which errors of the constraints decay, 1/s: a few times the rates of the motion itself, so that it is never
-// the stiffest part. On a wheel carrier the spin tilts nothing, and what turns is the carrier.
-double decay_rate(const Multibody& s, int guided) {
-  const Vector3& beta_dot = s.attitude.beta_dot;
-  double omega_squared = (s.Q * beta_dot).squaredNorm();
-  if (guided) omega_squared = std::fmin(omega_squared, 16 * beta_dot.head<2>().squaredNorm());
-  const double gravity = Vector3(s.wheel.g_X, s.wheel.g_Y, s.wheel.g).stableNorm();
-  return 5 * std::sqrt(gravity / (s.wheel.r_0 + s.wheel.r) + omega_squared);
-}
-
-// (19) solved for the velocity of O: -[A][r]^T[Q]{beta_dot}.
-void set_rolling_velocity(const WheelParameters* wheel, double* y) {
-  const Multibody s(*wheel, y);
-  Eigen::Map<Vector3>(y + X_O_dot) = -s.B.rightCols<3>() * s.attitude.beta_dot;
-}
-
-// Of a slip, fixed axes.
-Vector2 direction(const double* y) { return {std::cos(y[psi] + y[chi]), std::sin(y[psi] + y[chi])}; }
-
-// The state with all velocities. Of a wheel that slides: (19) with the slip on its right-hand side, but for Z_O_dot,
-// which is a state.
-States whole(const WheelParameters& wheel, const double* state, bool slides) {
-  States y;
-  std::copy_n(state, y.size(), y.data());
-  if (!slides) return y;
-  set_rolling_velocity(&wheel, y.data());
-  Eigen::Map<Vector2>(y.data() + X_O_dot) += state[speed] * direction(state);
-  y[Z_O_dot] = state[Z_O_dot];
-  return y;
-}
-
 // (24), ready for a law of friction.
 struct Instant {
   const WheelScene& scene;
   Multibody s;
   bool slides;
-  Vector2 d;       // direction of the slip, fixed axes
   Vector9 column;  // right-hand side
 };
 
 Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
-  Instant now = {scene, Multibody(scene.wheel, whole(scene.wheel, y, slides).data()), slides, {}, {}};
+  Instant now = {scene, Multibody(scene.wheel, y, slides), slides, {}};
   now.column << F(now.s, scene.load), -now.s.B_dot * now.s.q_dot;
   now.column.segment<3>(3) += F_beta(now.s);
-  if (!slides) return now;
-  now.d = direction(y);
-  now.column.segment<2>(6).setZero();
-  // always: rates and the release agree on N
-  now.column[8] -= decay_rate(now.s, scene.guided) * (now.s.B * now.s.q_dot)[2];
+  if (slides) now.column.segment<2>(6).setZero();
   return now;
 }
 
@@ -149,7 +119,7 @@ Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
   if (!now.slides) return K;
   K.block<2, 9>(6, 0).setZero();
   K.block<2, 2>(6, 6).setIdentity();
-  K.block<2, 1>(6, 8) = mu * now.d;
+  K.block<2, 1>(6, 8) = mu * s.d;
   return K;
 }
 
@@ -206,39 +176,29 @@ double spin_rate(const Instant& now, const Solution& solution) {
   return now.scene.friction.kind == WHEEL_HELD ? 0 : omega_z_dot(now.s, solution.unknowns);
 }
 
-template <bool slides>
-void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
-  const double spin_start = motion->phi_dot + motion->psi_dot * std::cos(motion->theta);
-  Eigen::Map<Vector6>(y) << motion->X_O, motion->Y_O, wheel_height(wheel, motion->theta), motion->psi, motion->theta,
-      motion->phi;
-  Eigen::Map<Vector3>(y + psi_dot) << motion->psi_dot, motion->theta_dot, spin_start;
-  set_rolling_velocity(wheel, y);
-  if (!slides) return;
-  y[speed] = Vector2(motion->slip_x, motion->slip_y).norm();
-  y[chi] = wheel_angle_of(motion->slip_x, motion->slip_y);
-}
-
-// (24) with -[B_dot]{q_dot} - decay_rate [B]{q_dot} in the last rows, and a height that decays to that of (32)
-// (Baumgarte). Both added terms vanish on the constraints. The rate of the slip is that of [B]{q_dot}; its axes turn
-// with psi. N is infinite where the wheel jams.
+// The rate of omega_2 = psi_dot sin(theta); that of the slip is the rate of [B]{q_dot}, whose axes turn with psi.
+// Returns N, infinite where the wheel jams.
 template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  Instant now = instant_of(*scene, y, slides);
+  const Instant now = instant_of(*scene, y, slides);
   const Multibody& s = now.s;
-  const double rate = decay_rate(s, scene->guided);
-  if (!slides) now.column.tail<3>() -= rate * (s.B * s.q_dot);
   const Solution solution = solve(now);
+  const Vector6 &q_dot = s.q_dot, q_ddot = solution.unknowns.head<6>();
   const double N = solution.unknowns[lambda_3];
-  Eigen::Map<Vector6> velocities(y_dot), accelerations(y_dot + 6);
-  velocities = s.q_dot;
-  velocities[Z_O] -= rate * (y[Z_O] - (scene->wheel.r_0 * s.attitude.sin_theta + scene->wheel.r));
-  accelerations = solution.unknowns.head<6>();
-  y_dot[spin] = spin_rate(now, solution);
+  y_dot[WHEEL_THETA] = q_dot[theta];
+  y_dot[WHEEL_OMEGA_1] = q_ddot[theta];
+  y_dot[WHEEL_OMEGA_2] = q_ddot[psi] * s.attitude.sin_theta + q_dot[psi] * s.attitude.cos_theta * q_dot[theta];
+  y_dot[WHEEL_OMEGA_3] = spin_rate(now, solution);
+  y_dot[WHEEL_PSI] = q_dot[psi];
+  y_dot[WHEEL_PHI] = q_dot[phi];
+  y_dot[WHEEL_X_O] = q_dot[X_O];
+  y_dot[WHEEL_Y_O] = q_dot[Y_O];
   if (!slides) return N;
-  const Vector3 slip_dot = s.B * solution.unknowns.head<6>() + s.B_dot * s.q_dot;
-  const Vector2& d = now.d;
-  y_dot[speed] = slip_dot.head<2>().dot(d);
-  y_dot[chi] = y[speed] == 0 ? 0 : (slip_dot[1] * d[0] - slip_dot[0] * d[1]) / y[speed] - y[psi_dot];
+  const Vector3 slip_dot = s.B * q_ddot + s.B_dot * q_dot;
+  const Vector2& d = s.d;
+  const double turn = slip_dot[1] * d[0] - slip_dot[0] * d[1];
+  y_dot[WHEEL_SLIP] = slip_dot.head<2>().dot(d);
+  y_dot[WHEEL_CHI] = y[WHEEL_SLIP] == 0 ? 0 : turn / y[WHEEL_SLIP] - q_dot[psi];
   // Without friction the determinant is -sin(theta) times positive terms.
   const bool has_room = scene->guided || solution.determinant < 0;
   constexpr double usual = 100;  // weights
@@ -247,11 +207,13 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
 }
 
 template <bool slides>
-void kinematics(const WheelParameters* wheel, const double* state, WheelKinematics* out) {
-  const States y = whole(*wheel, state, slides);
-  const double phi_dot = y[spin] - y[psi_dot] * std::cos(y[theta]);
-  *out = {y[X_O],     y[Y_O],     y[Z_O],     y[psi],       y[theta], y[phi], y[X_O_dot],
-          y[Y_O_dot], y[Z_O_dot], y[psi_dot], y[theta_dot], phi_dot,  y[spin]};
+void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
+  const Multibody s(*wheel, y, slides);
+  *out = {y[WHEEL_X_O], y[WHEEL_Y_O],   wheel_height(wheel, y[WHEEL_THETA]),
+          y[WHEEL_PSI], y[WHEEL_THETA], y[WHEEL_PHI],
+          s.q_dot[X_O], s.q_dot[Y_O],   s.q_dot[Z_O],
+          s.q_dot[psi], s.q_dot[theta], s.q_dot[phi],
+          s.omega_z};
 }
 
 template <bool slides>
@@ -264,34 +226,20 @@ void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
 }
 
 template <bool slides>
-void stop_spin(const WheelParameters* wheel, double* y) {
-  y[spin] = 0;
-  if (!slides) set_rolling_velocity(wheel, y);
-}
-
-template <bool slides>
-void reduce(const double* y, double* reduced) {
-  const WheelMotion motion = {y[psi], y[theta], y[phi], y[psi_dot], y[theta_dot], 0, y[X_O], y[Y_O], 0, 0};
-  wheel_reduced.start(nullptr, &motion, reduced);  // reads no parameter
-  reduced[WHEEL_OMEGA_3] = y[spin];
-  if (!slides) return;
-  reduced[WHEEL_SLIP] = y[speed];
-  reduced[WHEEL_CHI] = y[chi];
+void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
+  (slides ? wheel_sliding : wheel_reduced).start(wheel, motion, y);
 }
 
 template <bool slides>
 constexpr WheelFormulation formulation = {
-    .states = WHEEL_MULTIBODY_STATES,
+    .states = slides ? WHEEL_SLIDING_STATES : WHEEL_REDUCED_STATES,
     .start = start<slides>,
     .derivative = derivative<slides>,
-    .spin_index = spin,
-    .tilt_index = theta,
-    .slip_index = slides ? int{speed} : -1,
+    .spin_index = WHEEL_OMEGA_3,
+    .tilt_index = WHEEL_THETA,
+    .slip_index = slides ? int{WHEEL_SLIP} : -1,
     .kinematics = kinematics<slides>,
     .dynamics = dynamics<slides>,
-    .reduce = reduce<slides>,
-    .stop_spin = stop_spin<slides>,
-    .grip = slides ? set_rolling_velocity : nullptr,
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
  * The reaction R is eliminated from m a = F + R and dH/dt = M + c x R + tau e3, where c = (0, -rho, -eta)
  * points from O to the contact. docs/equations.md derives every line. State and geometry: frame.h. */
 #include <math.h>
-#include <string.h>
 
 #include "frame.h"
 
@@ -227,13 +226,6 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   set_dynamics(scene, &now.frame, &now.accelerations, out);
 }
 
-static void stop_spin(const WheelParameters* wheel, double* y) {
-  (void)wheel;
-  y[WHEEL_OMEGA_3] = 0;
-}
-
-static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_REDUCED_STATES); }
-
 const WheelFormulation wheel_reduced = {
     .states = WHEEL_REDUCED_STATES,
     .start = start,
@@ -243,6 +235,4 @@ const WheelFormulation wheel_reduced = {
     .slip_index = -1,
     .kinematics = kinematics,
     .dynamics = dynamics,
-    .reduce = reduce,
-    .stop_spin = stop_spin,
 };

@@ -230,15 +230,6 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   set_dynamics(scene, &b.frame, &m.a, out);
 }
 
-static void reduce(const double* y, double* reduced) { memcpy(reduced, y, sizeof(double) * WHEEL_SLIDING_STATES); }
-
-static void stop_spin(const WheelParameters* wheel, double* y) { wheel_reduced.stop_spin(wheel, y); }
-
-static void grip(const WheelParameters* wheel, double* y) {
-  (void)wheel;
-  y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
-}
-
 const WheelFormulation wheel_sliding = {
     .states = WHEEL_SLIDING_STATES,
     .start = start,
@@ -248,7 +239,4 @@ const WheelFormulation wheel_sliding = {
     .slip_index = WHEEL_SLIP,
     .kinematics = kinematics,
     .dynamics = dynamics,
-    .reduce = reduce,
-    .stop_spin = stop_spin,
-    .grip = grip,
 };

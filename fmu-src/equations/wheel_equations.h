@@ -4,7 +4,7 @@
  * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
  *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
  *              the Euler angles' rates in the place of the angular velocity
- *   multibody  the paper's system (24); unknowns q and q_dot, constraints on accelerations; 12 states
+ *   multibody  the paper's system (24), a matrix of 9 x 9 solved at each state, which is that of `reduced`
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
  * In each the wheel may be on a wheel carrier, which directs the axle (WheelScene.guided).
  * All functions are pure: no time, no allocation, no global state. SI units, angles in rad.
@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MULTIBODY_STATES = 12, WHEEL_MAX_STATES = 12 };
+enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MAX_STATES = 12 };
 
 /* Places in the state of `wheel_reduced`, angular velocity along e1, e2, e3; and in that of `wheel_sliding`
  * behind them the slip |u| and its direction chi. */
@@ -154,13 +154,6 @@ typedef struct WheelFormulation {
   int slip_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
-  /* The state of `wheel_reduced` (out) with the same position and angular velocity; with a slip, that of
-   * `wheel_sliding`. */
-  void (*reduce)(const double* y, double* reduced);
-  /* Sets omega_z to exactly zero: the start of a phase in which it is held there. */
-  void (*stop_spin)(const WheelParameters* wheel, double* y);
-  /* The end of the slip: y becomes a state of the form that rolls; null in these. */
-  void (*grip)(const WheelParameters* wheel, double* y);
 } WheelFormulation;
 
 /* y by WHEEL_THETA and on. Where J_x = J_y, phi enters nothing, and a simpler elimination is taken. X_O and Y_O never
@@ -171,17 +164,15 @@ extern const WheelFormulation wheel_reduced;
  * state of model exchange. */
 extern const WheelFormulation wheel_euler;
 
-/* y = q, q_dot with q = X_O, Y_O, Z_O, psi, theta, phi, (25), but with omega_z, (21), in the place of phi_dot: a wheel
- * whose spin is held keeps it at exactly zero. The constraints are stabilized: what rounding and step errors leave of
- * [B]{q_dot} and of Z_O - height decays, on the true motion nothing changes. */
+/* The state of `wheel_reduced`; its rates, accelerations and reactions by (24), from the q and q_dot of (25) that
+ * satisfy (19) and (32) there. */
 extern const WheelFormulation wheel_multibody;
 
 /* y = that of `wheel_reduced`, |u| and chi, by WHEEL_THETA and on: Newton and Euler, with the ground's horizontal force
  * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. */
 extern const WheelFormulation wheel_sliding;
 
-/* y = that of `wheel_multibody` with |u| and chi in the place of X_O_dot and Y_O_dot: (24) with the law of friction in
- * the place of the two horizontal constraints. */
+/* The state of `wheel_sliding`: (24) with the law of friction in the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);

@@ -52,7 +52,7 @@ int spin_alone(const Setup& setup, const InForce& now) {
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
-  if (law != WHEEL_FRICTIONLESS) formulation_of(setup, now.scene).stop_spin(&now.scene.wheel, y);
+  if (law != WHEEL_FRICTIONLESS) y[setup.formulation->spin_index] = 0;
   decide_law(setup, t, y, now, law == WHEEL_HELD);
 }
 
@@ -61,19 +61,18 @@ bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 // (t, y) => slip above the least; what is left of it at its end falls at once
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   constexpr double near = 1e3;
-  const int slip = setup.sliding->slip_index;
   double least = least_slip(setup, t);
-  if (y[slip] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
+  if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
     const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
-    const double fall = std::fmin(rates.y_dot[slip], 0), turning = y[slip] * rates.y_dot[slip + 1];
+    const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
   }
-  return (y[slip] - least) / setup.slip_scale;
+  return (y[WHEEL_SLIP] - least) / setup.slip_scale;
 }
 
 void end_slip(const Setup& setup, double t, double* y, InForce& now) {
-  y[setup.sliding->slip_index] = 0;
+  y[WHEEL_SLIP] = 0;
   decide_contact(setup, t, y, now);
 }
 

@@ -132,7 +132,7 @@ bool decide(Wheel& w) {
   double& omega_z = run.y[setup.formulation->spin_index];
   const double spin = omega_z;
   const bool led = is_led(setup, run);
-  if (law.kind == WHEEL_HELD && led) setup.formulation->stop_spin(&run.in_force.scene.wheel, run.y);
+  if (law.kind == WHEEL_HELD && led) omega_z = 0;
   const auto ends_here = [&] {
     const Event ending = ending_at(setup, run);
     if (ending != Event::none) end_run(w, ending);

@@ -35,9 +35,9 @@ bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
 }
 
 // (scene, y) => the slip as it would be without friction
-WheelSlip free_slip(const Setup& setup, WheelScene scene, const double* y) {
+WheelSlip free_slip(WheelScene scene, const double* y) {
   scene.ground = WHEEL_GROUND_PULLS;
-  return slip_of(setup, scene, y, 0);
+  return wheel_slip(&scene, y, 0);
 }
 
 // Whether a law of a wheel without spin agrees with the motion that it gives.
@@ -74,8 +74,8 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
   if (psi_dot == 0 && theta_dot == 0 && across[0] == 0 && across[1] == 0) return;
   WheelKinematics k;
   f.kinematics(&setup.scene.wheel, y, &k);
-  const double u = f.slip_index < 0 ? 0 : y[f.slip_index], chi = f.slip_index < 0 ? 0 : y[f.slip_index + 1];
-  const double slip_x = u * std::cos(chi), slip_y = u * std::sin(chi);
+  const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
+  const double slip_x = u * std::cos(y[WHEEL_CHI]), slip_y = u * std::sin(y[WHEEL_CHI]);
   WheelMotion motion = {k.psi, k.theta, k.phi, psi_dot, theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
   if (!starts) {
     motion.psi_dot = k.psi_dot;
@@ -87,15 +87,15 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
-  const bool slips_on = now.slides() && y[setup.sliding->slip_index] > least_slip(setup, t);
+  const bool slips_on = now.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
-  if (now.slides()) setup.sliding->grip(&now.scene.wheel, y);
+  if (now.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
   now.scene.contact = WHEEL_GRIPS;
   now.layered = false;
   decide_law(setup, t, y, now);
   if (grip_left(setup, now, t, y) >= 0) return;
   const WheelScene scene = now.scene_at(t);
-  const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(setup, scene, y).N < 0;
+  const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(scene, y).N < 0;
   if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
 }
 
@@ -112,8 +112,8 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
     scene.friction = now.scene.friction = law;
-    y[setup.sliding->slip_index] = 2 * least_slip(setup, t);
-    y[setup.sliding->slip_index + 1] = first_direction(setup, scene, y);
+    y[WHEEL_SLIP] = 2 * least_slip(setup, t);
+    y[WHEEL_CHI] = first_direction(scene, y);
   };
   if (may_be_held(setup, now, y)) {
     for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {
@@ -126,12 +126,10 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
   }
 }
 
-double first_direction(const Setup& setup, const WheelScene& scene, const double* y) {
-  double reduced[WHEEL_MAX_STATES];
-  setup.sliding->reduce(y, reduced);
-  const double chi = wheel_slip_direction(&scene, reduced);
+double first_direction(const WheelScene& scene, const double* y) {
+  const double chi = wheel_slip_direction(&scene, y);
   if (!std::isnan(chi)) return chi;
-  const WheelSlip free = free_slip(setup, scene, y);
+  const WheelSlip free = free_slip(scene, y);
   return wheel_angle_of(free.growth, free.turn);
 }
 

@@ -32,7 +32,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
 // (scene, y of a wheel that slides) => direction in which a slip begins, rad. Without one the event that ends the run
 // follows at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
-double first_direction(const Setup& setup, const WheelScene& scene, const double* y);
+double first_direction(const WheelScene& scene, const double* y);
 
 // (t) => m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as
 // much: small parts of the tolerance, and large enough for the digits of an instant.

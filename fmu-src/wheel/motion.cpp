@@ -149,8 +149,7 @@ bool is_about_to_jam(const Wheel& w) {
   if (!w.run.in_force.slides()) return false;
   double y[WHEEL_MAX_STATES];
   w.solver.read(w.solver.known_until(), y);
-  const double chi = y[w.setup.sliding->slip_index + 1];
-  return slip_of(w.setup, w.run.in_force.scene, y, chi).room < little_room;  // the same whatever acts
+  return wheel_slip(&w.run.in_force.scene, y, y[WHEEL_CHI]).room < little_room;  // the same whatever acts
 }
 
 // Where the wheel rests in a regularized law that is soft enough for DOP853 on a passage, the decay of the law limits
@@ -178,7 +177,7 @@ bool is_about_to_jam(const Wheel& w) {
 //   most_work is done: failed.
 Outcome step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solver;
-  const long long work_per_step = w.setup.formulation->states == WHEEL_MULTIBODY_STATES ? work_per_multibody_step : 1;
+  const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       w.failure =
@@ -245,7 +244,7 @@ void end(Wheel& w) {
 void fail(Wheel& w, const Run& before) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
   const double spin = state_now(w)[w.setup.formulation->spin_index];
-  const double slip = before.in_force.slides() ? before.y[w.setup.sliding->slip_index] : 0;
+  const double slip = before.in_force.slides() ? before.y[WHEEL_SLIP] : 0;
   w.reporter.log(
       Topic::error,
       "The solver stopped at t = %s s, where omega_z = %s rad/s, in a step that began with a slip of %s m/s: %s.",

@@ -32,9 +32,9 @@ template <int states>
 }
 
 // (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 / sin(theta)
-// magnifies that of theta, of which a tenth is left over many steps. Where psi_dot is a state, accelerations of the
-// size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of
-// a slip, which follows them at once.
+// magnifies that of theta, of which a tenth is left over many steps. In (24) accelerations of the size of
+// r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip,
+// which follows them at once.
 double rounding_of_rates(double theta, double heading, bool slides) {
   const double cancels = slides ? heading * heading : heading;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
@@ -47,16 +47,16 @@ template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int spin = setup.formulation->spin_index, psi_dot = spin - 2;  // psi_dot is a state of the multibody form
-  const bool multibody = setup.formulation == &wheel_multibody;
+  const int spin = setup.formulation->spin_index;
   const double theta = y[setup.formulation->tilt_index];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const double slow = share * setup.tolerance, heading = multibody ? std::fabs(y[psi_dot]) * setup.time_scale : 0;
+  const bool multibody = setup.formulation == &wheel_multibody;
+  const double slow = share * setup.tolerance;
+  const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
   const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
   double scales[WHEEL_MAX_STATES];
   scales_at(setup, y[spin], scales);
-  if (multibody) scales[psi_dot] /= std::sin(theta);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = 10 * std::sqrt(tolerance);
@@ -71,9 +71,8 @@ double margin(void* owner, int event, double t, const double* y) {
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
-  const Setup& setup = wheel_of(owner).setup;
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
-  std::fill_n(slopes, chi.size(), -slip_of(setup, scene, y, chi.back()).settling);
+  std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
 // (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment
@@ -121,7 +120,7 @@ solver::Problem problem_of(Wheel& wheel) {
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
     problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.settling = {setup.sliding->slip_index + 1, setup.sliding->slip_index, slopes_of_turning};
+  if (now.slides()) problem.settling = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;

@@ -1,5 +1,5 @@
 // The initial-value problem y' = f(t, y) that a run poses to the solver, with its error weights and the functions whose
-// fall below zero is an event. Reduced or multibody state, see wheel_equations.h.
+// fall below zero is an event. State: see wheel_equations.h.
 #pragma once
 
 #include "wheel.hpp"

@@ -44,15 +44,11 @@ void set_error_scales(Setup& setup) {
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
   const double reduced[] = {1, rate, rate, rate, 3, 3, 3 * length, 3 * length};
-  // The velocity of O is bound to the rates by the constraints: weighed lower, it strays less from them.
-  const double speed = 0.15 * slowest * length;
-  setup.slip_scale = speed;
-  const double multibody[] = {length, length, length, 1, 1, 1, speed, speed, speed, rate, rate, rate};
+  setup.slip_scale = 0.15 * slowest * length;
   const double euler[] = {3 * length, 3 * length, 3, 1, 3, rate, rate, rate};
   std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
-  const bool by_paper = f->states == WHEEL_MULTIBODY_STATES;
-  std::copy_n(by_paper ? multibody : setup.exchanged ? euler : reduced, f->states, setup.slow_scales);
-  if (setup.sliding && !by_paper) setup.slow_scales[setup.sliding->slip_index] = speed;
+  std::copy_n(setup.exchanged ? euler : reduced, f->states, setup.slow_scales);
+  if (setup.sliding) setup.slow_scales[WHEEL_SLIP] = setup.slip_scale;
 }
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
@@ -119,7 +115,7 @@ void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, 
   const double axial = motion.psi_dot * std::cos(motion.theta), rounding = 4 * std::numeric_limits<double>::epsilon();
   formulation.start(&wheel, &motion, y);
   if (std::fabs(motion.phi_dot + axial) <= rounding * (std::fabs(motion.phi_dot) + std::fabs(motion.psi_dot)))
-    formulation.stop_spin(&wheel, y);
+    y[formulation.spin_index] = 0;
 }
 
 Setup setup_of(const Demand& demand) {

@@ -103,13 +103,6 @@ inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, co
   return dynamics;
 }
 
-// (scene, y of a wheel that slides, chi) => its slip in the direction chi
-inline WheelSlip slip_of(const Setup& setup, const WheelScene& scene, const double* y, double chi) {
-  double reduced[WHEEL_MAX_STATES];
-  setup.sliding->reduce(y, reduced);
-  return wheel_slip(&scene, reduced, chi);
-}
-
 // (omega_z, rad/s) => scale of each state. A fast wheel hardly tilts: the range of theta falls with the square of the
 // spin, that of the rates with the spin, and errors are weighed by these ranges.
 void scales_at(const Setup& setup, double omega_z, double* out);

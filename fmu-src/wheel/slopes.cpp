@@ -35,6 +35,7 @@ struct Pass {
   using Numbers = std::array<double, count>;
   bool asked[computed] = {}, by_force = false;
   Numbers centre = {}, slope = {}, error;
+  std::array<bool, count> exact = {};  // smaller steps are of no use, whatever else is asked for
 
   Pass() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
 
@@ -74,19 +75,19 @@ struct Pass {
       const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
       // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
-      if (likely >= error[i]) continue;
+      if (exact[i] || likely >= error[i]) continue;
       slope[i] = quotient[i];
       error[i] = likely;
     }
     return true;
   }
 
-  // Whether smaller steps are of no use; scale: of the variable.
-  bool is_exact(double scale) const {
+  // (scale: of the variable) => exact; whether all are
+  bool settle(double scale) {
     constexpr double relative = 1e-11;
     for (std::size_t i = 0; i < count; ++i)
-      if (!(error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale))) return false;
-    return true;
+      exact[i] |= error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale);
+    return std::all_of(exact.begin(), exact.end(), [](bool of) { return of; });
   }
 
   // Smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
@@ -98,7 +99,7 @@ struct Pass {
     constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
     bool done = false;
     double part = 1e-3;
-    while (part > (done ? finest : finest_first) && !is_exact(scale)) {
+    while (part > (done ? finest : finest_first) && !settle(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
                           [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
       part *= 0.1;
@@ -182,7 +183,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   const bool begins = now.scene.contact == WHEEL_SLIDES && before.contact == WHEEL_GRIPS;
   const auto move_to = [&](double x) {
     place = x;
-    if (begins) now.y[setup.sliding->slip_index + 1] = first_direction(setup, now.scene, now.y);
+    if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
     return true;
   };
   begins ? pass.refine(place, size, now, move_to) : pass.take(stencils[0], place, 1e-3 * size, now, move_to);
@@ -190,7 +191,7 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   return true;
 }
 
-// (y, y_dot of the reduced forms) => how fast the wheel moves, 1/s.
+// (y, y_dot) => how fast the wheel moves, 1/s.
 double pace_of(const double* y, const double* y_dot, bool slides) {
   double swing = 0;
   for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) swing += std::fabs(y_dot[rate]);
@@ -199,16 +200,11 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
   return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + chi_dot;
 }
 
-// In the reduced form and a small part of the time in which the wheel itself moves. kappa of a regularized law is kept:
-// its rate can be large, and acts as a moment about the axle.
+// In a small part of the time in which the wheel itself moves. kappa of a regularized law is kept: its rate can be
+// large, and acts as a moment about the axle.
 void take_along_motion(Wheel& w, Pass& pass) {
-  const Reading whole(w);
-  Setup setup = w.setup;
-  setup.formulation = &wheel_reduced;
-  if (setup.sliding) setup.sliding = &wheel_sliding;
-  Reading start = whole;
-  start.setup = &setup;
-  formulation_of(w.setup, whole.scene).reduce(whole.y, start.y);
+  const Setup& setup = w.setup;
+  Reading start(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
     start.y[angle] = wheel_less_turns(start.y[angle]);
   keep_ground(start);

@@ -45,8 +45,8 @@ double guide_moment(Reading& now, int axis) {
 // (axis) => m/s, of the wheel's material point at the contact: along e1 (0) or across it (1)
 double slip(const Reading& now, int axis) {
   if (now.scene.contact == WHEEL_GRIPS) return 0;
-  const double* const u = now.y + formulation_of(*now.setup, now.scene).slip_index;
-  return u[0] * (axis == 0 ? std::cos(u[1]) : std::sin(u[1]));
+  const double chi = now.y[WHEEL_CHI];
+  return now.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
 }
 
 double brake_moment(Reading& now) {

@@ -109,8 +109,9 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   }
   if (w.run.phase == Phase::faulty || w.run.phase == Phase::initial) w.run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
-  if (asked == value / factorial[order]) return;
-  asked = value / factorial[order];
+  const double taken = value / factorial[order];
+  if (asked == taken && w.demand.news != News::stays) return;  // what is set to where it stays counts as set
+  asked = taken;
   w.demand.news = News::set;
   if (w.demand.kind == Kind::model_exchange && is_running(w.run.phase)) apply_at_once(w);
 }

@@ -242,6 +242,35 @@ def test_every_pair_that_the_description_declares_for_the_start_is_answered_and_
     assert w.messages == []
 
 
+TURNED = {"theta_start": np.pi / 2, "psi_start": 0.7}
+EVERY = STARTS | {
+    "upright, steered": TURNED | {"guided": True, "phi_dot_start": -49.0},
+    "upright, sliding": {**TURNED, "psi_start": -0.9, "phi_dot_start": -23.0}
+    | {"mu_max": 0.4, "mu_slide": 0.4, "slip_x_start": -1.9},
+}
+
+
+@pytest.mark.parametrize("when", ["initializing", "during the run"])
+@pytest.mark.parametrize("scene", EVERY)
+def test_derivatives_asked_together_are_bit_identical_to_those_asked_alone(wheel, scene, when):
+    w, kinds = wheel().initializing(**EVERY[scene]), ["input", "parameter"]
+    if when == "during the run":
+        assert w.exitInitializationMode() == OK and w.by(0.1)
+        kinds.remove("parameter")
+    knowns = [name for name, v in w.variables.items() if v.causality in kinds and v.type == "Real"]
+    together = w.jacobian(w.reals, knowns)
+    alone = np.vstack([w.jacobian([unknown], knowns) for unknown in w.reals])
+    assert np.array_equal(together, alone)
+    assert np.count_nonzero(together) > 10
+
+
+def test_small_differences_of_large_terms_do_not_hide_a_derivative(wheel):
+    """Upright, all outputs at once: v_y = -(r_0 + r) theta_dot is a difference of parts of v_x, 17 m/s."""
+    w = wheel().initializing(**EVERY["upright, steered"])
+    (found,) = w.jacobian(outputs(w), ["theta_dot_guide"])[outputs(w).index("v_y")]
+    within(abs(found + 0.35), 1e-11, "derivative of v_y, m")
+
+
 def test_rolling_resistance_alone_is_no_moment_of_the_brake(wheel):
     """tau_brake = tau M_brake / (M_brake + s N) is zero for each s where M_brake is."""
     w = wheel().initializing()

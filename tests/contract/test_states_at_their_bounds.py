@@ -62,7 +62,7 @@ STATES: dict[str, tuple[Values, float, str, int, int, int, int]] = {
     "DOP853, a wheel that can slide": ({**ROAD, "s": 0.02}, 0.3, "runge_kutta", 8, 4, 13, STEPPING),
     "collocation": ({**ROAD, **THROWN, "s": 0.02}, 0.1, "collocation", 12, 5, 6, STEPPING),
     "Adams": (KINDS["adams"], 0.7, "cvode", 8, 3, 1, STEPPING),
-    "multibody, BDF": (KINDS["multibody, bdf"], 0.7, "cvode", 12, 2, 1, STEPPING),
+    "multibody, BDF": (KINDS["multibody, bdf"], 0.7, "cvode", 8, 2, 1, STEPPING),
     "unfolded": ({}, 0.7, "", 8, 2, 0, UNFOLDED),
     "at the start": ({"s": 0.02}, 0.0, "", 8, 2, 0, AT_START),
 }

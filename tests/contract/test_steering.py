@@ -58,7 +58,8 @@ def test_what_is_set_takes_effect_at_once_and_at_the_start_without_a_jump(
 def test_derivatives_count_until_something_is_set_after_their_step(
     library: Library, road: dict, formulation: int
 ) -> None:
-    """Moments and forces at the end of a step have its accelerations; what is set later is what follows."""
+    """Moments and forces at the end of a step have its accelerations; what is set later, be it to the value that it
+    has, is what follows."""
     inertial = ("psi_ddot", "theta_ddot", "M_guide_1", "M_guide_2", "lambda_3")
     with library.wheel() as w, library.wheel() as longer:
         for wheel in (w, longer):
@@ -70,11 +71,18 @@ def test_derivatives_count_until_something_is_set_after_their_step(
         steered = dict(zip(inertial, before, strict=True))
         within(absolute_error(before[:2], [2.0, 0.5]), 1e-13, "accelerations at the end of the step, rad/s2")
         state = w.serialized()
-        assert w.put(psi_dot_guide=w.get("psi_dot_guide")[0]).get(*inertial) == before  # the value that it has
-        assert w.put(F_X=1.0).get("psi_ddot", "theta_ddot") == pytest.approx([0.0, 0.0], abs=1e-14)
-        moment = w.put(F_X=0.0).get("M_guide_2")[0]
-        beyond(abs(moment - steered["M_guide_2"]), 0.5, "moment that the accelerations take, N m")
-        assert w.back(state).get(*inertial) == before
+        w.put(F_X=1.0)
+        held = w.put(F_X=0.0).get(*inertial)
+        within(absolute_error(held[:2], [0.0, 0.0]), 1e-14, "accelerations of a carrier that turns evenly, rad/s2")
+        beyond(abs(held[3] - steered["M_guide_2"]), 0.5, "moment that the accelerations take, N m")
+        for name in ("psi_dot_guide", "F_X", "M_brake", "s"):
+            assert w.back(state).get(*inertial) == before
+            assert w.put(**{name: w.get(name)[0]}).get(*inertial) == held
+        assert w.back(state).set_input_derivatives(["psi_dot_guide"], [[0.0]]) == OK and w.get(*inertial) == held
+        set_again = w.put(psi_dot_guide=w.get("psi_dot_guide")[0]).serialized()
+        assert w.to(0.2).bits() == w.back(state).to(0.2).bits()  # the motion is the same
+        assert w.back(set_again).get(*inertial) == held
+        w.back(state)
         w.back(state).give({"psi_dot_guide": (0.6, 2.0), "theta_dot_guide": (-0.25, 0.5)})
         within(absolute_error(w.get(*inertial), before), 1e-9, "the same where the slopes go on")
         w.to(0.2)

@@ -10,7 +10,7 @@ import pytest
 from support.bounds import beyond, within
 
 from wheelfmu.fmu import equations as eq
-from wheelfmu.truth.paper_transcription import Carried, dynamics_of, papers_state, solved
+from wheelfmu.truth.paper_transcription import Carried, dynamics_of, set_rolling, solved
 from wheelfmu.truth.pointwise import ACCELERATIONS, Table, draw
 
 FORMS, SLIDES = (eq.REDUCED, eq.EULER, eq.MULTIBODY), (eq.SLIDING, eq.MULTIBODY_SLIDING)
@@ -35,8 +35,7 @@ def guided(seed: int, law: int, rows: int = 3000) -> tuple[Table, Table]:
 
 def transcribed(scenes: Table, motions: Table, slides: bool) -> tuple[Table, Table]:
     """WheelDynamics, and the carrier's moments about e1 and e2."""
-    q = papers_state(eq.start_each(eq.MULTIBODY, scenes, motions))
-    paper = Carried(scenes["wheel"], q)
+    paper = Carried(scenes["wheel"], set_rolling(scenes["wheel"], motions))
     paper.turn = scenes["load"]["guide"]
     if slides:
         theta, theta_dot, theta_ddot = motions["theta"], motions["theta_dot"], scenes["load"]["guide"][:, 1]

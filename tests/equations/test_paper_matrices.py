@@ -16,7 +16,6 @@ from wheelfmu.truth.paper_transcription import (
     THETA,
     Paper,
     paper_table,
-    products_state,
     states,
     times,
     transposed,
@@ -107,7 +106,10 @@ def test_omega_z_of_21_is_the_axle_component_of_the_angular_velocity() -> None:
     within(absolute_error(Paper(WHEEL, y).omega_z, axle), 64 * EPSILON, "omega_z of (21), rad/s")
     scenes = eq.table(eq.Scene, len(y))
     scenes["wheel"] = WHEEL
-    k = eq.kinematics_each(eq.MULTIBODY, scenes, products_state(y))
+    motions = eq.table(eq.Motion, len(y))
+    for name, column in {"psi": 3, "theta": 4, "phi": 5, "psi_dot": 9, "theta_dot": 10, "phi_dot": 11}.items():
+        motions[name] = y[:, column]
+    k = eq.kinematics_each(eq.MULTIBODY, scenes, eq.start_each(eq.MULTIBODY, scenes, motions))
     within(absolute_error(k["omega_z"], axle), 64 * EPSILON, "omega_z of the product, rad/s")
     within(absolute_error(k["phi_dot"], y[:, 11]), 64 * EPSILON, "phi_dot of the product, rad/s")
     beyond(absolute_error(y[:, 11], axle), 0.6, "phi_dot off omega_z, rad/s")

@@ -1,14 +1,16 @@
 """What the free wheel keeps: Chaplygin's linear integrals and its constraints. s = 0, J_x = J_y."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
+import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.truth.closed_forms import linear_integrals
 from wheelfmu.truth.measure import constraint_drift
+from wheelfmu.truth.misprints import WHEEL, papers_start
 from wheelfmu.truth.motion import Library
+from wheelfmu.truth.paper_transcription import FORMS, Paper, marched, paper_table
 from wheelfmu.truth.reference import Wheel
 
 
@@ -28,25 +30,37 @@ def test_omega_2_and_omega_3_are_functions_of_theta_that_obey_chaplygins_linear_
 TIMES = np.linspace(0, 10, 201)
 
 
-def test_the_reduced_formulation_cannot_leave_its_constraints(library: Library) -> None:
-    velocity, height = constraint_drift(library, TIMES, None)
+@pytest.mark.parametrize("formulation", [2, 3])
+def test_no_formulation_can_leave_its_constraints(library: Library, formulation: int) -> None:
+    velocity, height = constraint_drift(library, TIMES, None, formulation=formulation)
     within(height.max(), 16 * EPSILON, "height off the contact, m")
     within(velocity.max(), 64 * EPSILON, "velocity of the contact, m/s")
-    multibody = constraint_drift(library, TIMES, None, formulation=3)
-    beyond(max(multibody[0].max(), multibody[1].max()), 1e-10, "drift of the multibody form, m, m/s")
 
 
-DRIFT = {tolerance: tolerance + 4096 * EPSILON for tolerance in (1e-6, 1e-8, 1e-10, 1e-12)}  # m, m/s
+# ---- (24) integrated with all twelve states, which drift: 100 s of the paper's free wheel ----
 
 
-def test_the_drift_of_the_multibody_formulation_stays_small_and_falls_with_the_tolerance(library: Library) -> None:
-    def drift(tolerance: float) -> float:
-        velocity, height = constraint_drift(library, TIMES, tolerance, formulation=3)
-        return float(max(velocity.max(), height.max()))
+def marched_to(form: type[Paper], step: float, end: float) -> tuple[float, float, np.ndarray]:
+    """|[B]{q_dot}| (largest entry, m/s), the height off the contact (m), the state."""
+    y = marched(form, WHEEL, papers_start(), step, round(end / step))
+    paper = form(WHEEL, y)
+    return float(np.abs(paper.slip).max()), float(np.abs(paper.height_error)), y
 
-    found = {tolerance: drift(tolerance) for tolerance in DRIFT}
-    for tolerance, bound in DRIFT.items():
-        within(found[tolerance], bound, f"drift at {tolerance:g}, m, m/s")
-    for coarse, fine in pairwise(DRIFT):
-        within(found[fine] / found[coarse], 0.1, "drift over that of a tolerance a hundred times as large")
-    beyond(drift(1e-4), DRIFT[1e-6], "drift at a tolerance of 1e-4, m, m/s")
+
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+def test_the_papers_twelve_states_lead_where_the_fmu_does(library: Library, form: type[Paper]) -> None:
+    run = library.simulate([0.0, 2.0], 1e-12, formulation=3)
+    names = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
+    told = np.array([run[name][-1] for name in (*names, *(f"{name}_dot" for name in names))])
+    errors = [np.abs(marched_to(form, step, 2.0)[2] - told).max() for step in (0.01, 0.005)]
+    within(errors[1], 5e-5, "states apart, SI")
+    within(errors[1] / errors[0], 0.1, "those of half the step over those of the whole")  # order 4: 1/16
+    beyond(np.abs(marched(form, paper_table(r=0.0501), papers_start(), 0.005, 400) - told).max(), 1e-4, "another r")
+
+
+def test_the_drift_of_24_falls_with_the_step_and_only_a_stabilised_one_does_not_grow(library: Library) -> None:
+    plain, tamed = ([marched_to(form, 0.02, end)[1] for end in (4.0, 16.0)] for form in FORMS.values())
+    beyond(plain[1] / plain[0], 3, "height that is lost in four times the time, plain")
+    within(tamed[1], plain[1] / 10, "height that is lost, stabilised, m")
+    finer = marched_to(Paper, 0.01, 16.0)[1]
+    within(finer / plain[1], 0.15, "height that is lost with half the step")

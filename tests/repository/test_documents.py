@@ -17,6 +17,7 @@ import pytest
 from lxml import etree
 from support.checkout import copy_checkout
 
+from wheelfmu.commands import MODULES
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
@@ -31,7 +32,7 @@ def run(*command: str, **variables: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=ROOT, env=os.environ | variables, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("words", [("wheelfmu", "variables"), ("wheelfmu.reports", "all")])
+@pytest.mark.parametrize("words", [("wheelfmu", "variables"), ("lab.reports", "all")])
 def test_tables_of_variables_reports_and_figures_in_prose_are_those_of_the_data(words: tuple[str, ...]) -> None:
     done = run(sys.executable, "-m", *words, "--check")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -160,10 +161,7 @@ def test_a_wrong_command_would_be_noticed() -> None:
     assert not accepted("walk") and not accepted("lint", "--fixx") and not accepted("run", "m=-5")
 
 
-# Commands of folders that can be deleted whole.
-PAGE = "tools/wheelfmu/page"
-PARTS = {"page": PAGE, "view": PAGE, "study": "examples/studies", "example": "examples/vehicles"}
-SCRIPTS = sorted(p.name for p in (ROOT / "scripts").iterdir() if (ROOT / PARTS.get(p.name, ".")).exists())
+SCRIPTS = sorted(MODULES)
 WRONG = {"build": "faster", "example": "car m_B=-1", "fuzz": "soon", "lint": "--fixx", "page": "--output"}
 WRONG |= {"report": "sped", "run": "m=-5", "setup": "tests", "study": "--varies", "test": "slow", "view": "no_file.csv"}
 

@@ -71,7 +71,7 @@ def test_run_simulates_and_draws(place: Path) -> None:
 
 def test_a_study_runs_that_of_a_file_too(place: Path) -> None:
     assert "2 reached" in door(place, "study", "--vary", "s=0,0.03", "--stop-time", "0.1", "--out", "two.zarr")
-    mine = 'from wheelfmu.studies import Study\n\nstudy = Study(grid={"s": [0.01]}, stop_time=0.1)\n'
+    mine = 'from lab.studies import Study\n\nstudy = Study(grid={"s": [0.01]}, stop_time=0.1)\n'
     (place / "study.py").write_text(mine, encoding="utf-8")
     assert "1 reached" in door(place, "study", "study.py", "--out", "mine.zarr")
 

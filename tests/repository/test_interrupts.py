@@ -20,7 +20,7 @@ COMMANDS = {
     "run": ("Built preset release.", 0.05, 0.4, 1.5, 3.0),
     "study fates --overwrite --out {place}/z": ("", 3.0),
     "page {place}/page.html": ("", 1.5),
-    "test quick": ("the release build", 2.0),
+    "test quick": ("Built preset release.", 2.0),
     "example car h=0.05ms": ("Built preset release.", 0.5, 4.0),
 }
 CASES = [(line, words, delay) for line, (words, *delays) in COMMANDS.items() for delay in delays]

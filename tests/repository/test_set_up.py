@@ -69,11 +69,14 @@ def test_lint_without_git_is_refused(checkout: Path) -> None:
 
 
 DELETABLE = {
-    "examples/vehicles": ("example",),
-    "examples/studies": ("study",),
-    "examples/control": (),
     "examples/importer": (),
-    "tools/wheelfmu/page": ("page", "view"),
+    "lab/lesson": ("figures", "page", "view"),
+    "lab/notebook": ("notebook",),
+    "lab/reports": ("report",),
+    "lab/site": ("site",),
+    "lab/studies": ("study",),
+    "lab/vehicles": ("example",),
+    "lab": ("example", "figures", "notebook", "page", "report", "site", "study", "view"),
 }
 
 

@@ -25,13 +25,13 @@ settings.load_profile("same")
 # A page is composed at once, instead of by the processor in the place of a graphics card.
 AT_ONCE = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
-COMPONENTS = ("diagrams", "examples", "page", "publishing", "release", "studies", "vehicles")  # not the core
+COMPONENTS = ("diagrams", "examples", "release")  # of the product, not the core
 
 
 def component(path: Path) -> str:
-    """The folder of a component's tests; none for the core's."""
-    folder = path.relative_to(ROOT).parts[1]
-    return folder if folder in COMPONENTS else ""
+    """The folder of a component's tests, or of the lab; none for the core's."""
+    part, folder = path.relative_to(ROOT).parts[:2]
+    return folder if part == "lab" or folder in COMPONENTS else ""
 
 
 @pytest.fixture(autouse=True)
@@ -106,7 +106,7 @@ def reference_tables() -> dict[str, dict[str, np.ndarray]]:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """A headless browser, the only one of its process: Playwright starts no second. Its folder can be deleted."""
-    with pytest.importorskip("wheelfmu.page.browser").chromium(*AT_ONCE) as found:
+    with pytest.importorskip("lab.lesson.browser").chromium(*AT_ONCE) as found:
         yield found
 
 

@@ -8,17 +8,17 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from wheelfmu import commands
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, Parser
 
 
 def module_of(name: str) -> ModuleType:
-    """The module of a command, whose folder is there."""
-    found = import_module(f"wheelfmu.commands.{name}")
-    part = getattr(found, "PART", "")
-    if not (ROOT / part).exists():
-        sys.exit(f"scripts/{name} needs the folder {part}, which is not here.")
-    return found
+    """The module of a command: of the product, or of a folder of the lab, each of which may be absent."""
+    try:
+        return import_module(commands.MODULES[name])
+    except KeyError:
+        sys.exit(f"scripts/{name} is a command of the lab, and its folder is not here.")
 
 
 def read(name: str, module: ModuleType, words: list[str]) -> Any:

@@ -1,8 +1,23 @@
-"""The commands under scripts/, a module each, whose docstring is its help.
+"""The commands under scripts/, a module each, whose docstring is its help: of the product here, of the lab in
+lab/FOLDER/commands.
 
 What is typed is read by OPTIONS, of one parser for all, or by `reads`, with its help by `usage`; NEEDS, or `needs`, are
 the words of set-up for it; `main` carries it out and returns the exit status. What stands at the head of a module is of
-the standard library alone: arguments are read before anything is installed. PART is the folder that a command is of,
-which may have been deleted; one that FINISHES ends itself at Ctrl-C; one that STAYS works in the caller's folder, all
-others in the project's.
+the standard library alone: arguments are read before anything is installed. One that FINISHES ends itself at Ctrl-C;
+one that STAYS works in the caller's folder, all others in the project's.
 """
+
+from pathlib import Path
+
+from wheelfmu.fmu.paths import ROOT
+
+HELPERS = ("__init__", "processes")
+PLACES = {"wheelfmu.commands": Path(__file__).parent}
+PLACES |= {f"lab.{path.parent.name}.commands": path for path in sorted((ROOT / "lab").glob("*/commands"))}
+# The module of each command that is here.
+MODULES = {
+    path.stem: f"{package}.{path.stem}"
+    for package, folder in PLACES.items()
+    for path in folder.glob("[a-z]*.py")
+    if path.stem not in HELPERS
+}

@@ -8,7 +8,7 @@ from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.paths import ROOT
 
-NEEDS = ("check",)
+NEEDS = ("test", "check")
 FOLDERS = ("contract", "equations", "exchange", "orbit", "solver")
 FILES = (
     *(f"physics/test_{name}.py" for name in ("brake", "friction_events", "slope", "symmetries_fmu")),

@@ -3,16 +3,14 @@
 import re
 import sys
 from importlib import import_module
-from pathlib import Path
+
+from wheelfmu.commands import MODULES
 
 
 def reads(_words: list[str]) -> None:
-    names = sorted(path.stem for path in Path(__file__).parent.glob("[a-z]*.py"))
-    for name in names:
-        module = import_module(f"wheelfmu.commands.{name}")
-        if hasattr(module, "main"):
-            about = " ".join((module.__doc__ or "").split())
-            print(f"{name:12s}{re.split(r'[.;:] ', about)[0].rstrip('.')}.")
+    for name, module in sorted(MODULES.items()):
+        about = " ".join((import_module(module).__doc__ or "").split())
+        print(f"{name:12s}{re.split(r'[.;:] ', about)[0].rstrip('.')}.")
     sys.exit()
 
 

@@ -50,4 +50,5 @@ def main(given: Namespace) -> None:
         if said := imports.communicate()[0] * bool(imports.returncode):
             print(said)
             raise Failed(1)
-        check("mypy", "--no-error-summary", "--config-file", "../pyproject.toml", ".", "../examples", **ELSEWHERE)
+        lab = ["../lab"] * (ROOT / "lab").exists()
+        check("mypy", "--no-error-summary", "--config-file", "../pyproject.toml", ".", *lab, "../examples", **ELSEWHERE)

@@ -8,7 +8,7 @@ from argparse import Namespace
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
 
-NEEDS = ("release",)
+NEEDS = ("release", "platforms", "test", "check", *["site"] * (ROOT / "lab" / "site").exists())
 
 
 def main(_given: Namespace) -> None:

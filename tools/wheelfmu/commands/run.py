@@ -47,7 +47,7 @@ from wheelfmu.fmu.outputs import deliver, new_folder
 from wheelfmu.fmu.paths import ROOT
 
 SCENES = {"free": "No rolling friction", "friction": "Rolling friction"}
-PAGE = ROOT / "tools" / "wheelfmu" / "page"
+PAGE = ROOT / "lab" / "lesson"
 # Of an earlier run, where this one has none; the paper's figures stay.
 OLD = ("free.*", "friction.*", "wheel.html", "error_time.*", "diagrams.*", "diagram_*")
 
@@ -98,7 +98,7 @@ def draw(new: Path, words: list[str]) -> list[str]:
     if PAGE.exists() and moving:
         tables = [new / f"{name}.csv" for name in moving]
         options = [*tables, "--output", new / "wheel.html", "--labels", *moving.values()]
-        drawing.insert(0, processes.python("wheelfmu.page", *options))
+        drawing.insert(0, processes.python("lab.lesson", *options))
     running = [processes.start(*words, stdout=PIPE, text=True) for words in drawing]
     said = [one.communicate()[0] for one in running]
     if any(one.returncode for one in running):

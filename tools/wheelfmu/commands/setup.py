@@ -3,23 +3,12 @@ Python packages in the versions of requirements.lock. Other commands set themsel
 
 from argparse import Namespace
 
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, suggestion
 
-WORDS = [
-    "check",
-    "tidy",
-    "asan",
-    "browser",
-    "test",
-    "study",
-    "control",
-    "report",
-    "site",
-    "page",
-    "notebook",
-    "release",
-]
-ABOUT = f"besides what ./scripts/run needs: {', '.join(WORDS)}; test is most of them, check the linters and pytest"
+LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
+WORDS = ["test", "all", "check", "tidy", "asan", "browser", "release", "platforms", *LAB]
+ABOUT = f"besides what ./scripts/run needs: {', '.join(WORDS)}; all is what ./scripts/test all needs, check the linters"
 
 
 def word(text: str) -> str:

@@ -1,9 +1,9 @@
-"""Runs every check and test: formatting, lint and clang-tidy; warnings as errors; all tests, those of the core again as
-on a processor without AVX2 and FMA; the contract tests and a minute of fuzzing under the sanitizers. Exit status 0 only
-if all passed. A fresh checkout takes about a quarter of an hour on two cores.
+"""Runs the tests of the product. Exit status 0 only if all passed.
 
-  ./scripts/test          everything
-  ./scripts/test quick    after each change: lint, the release build, the contract and all numerical tests
+./scripts/test          the product: equations, solver, motions, contract, diagrams, examples
+./scripts/test quick    after each change: all of them but diagrams and examples
+./scripts/test all      every check and test, the lab's too: formatting, lint and clang-tidy; the core again as on a
+                        processor without AVX2 and FMA; the contract and a minute of fuzzing under the sanitizers
 """
 
 import os
@@ -13,20 +13,21 @@ from argparse import Namespace
 from subprocess import STDOUT, check_output
 
 from wheelfmu.commands import processes
-from wheelfmu.fmu.outputs import step
+from wheelfmu.fmu.outputs import elapsed, step
 from wheelfmu.fmu.paths import ROOT
 
-OPTIONS = {"quick": {"nargs": "?", "choices": ["quick"], "help": "see above"}}
+OPTIONS = {"which": {"nargs": "?", "choices": ["quick", "all"], "help": "see above"}}
 CORE = [
     f"tests/{name}"
     for name in ["contract", "equations", "exchange", "orbit", "physics", "reference", "robustness", "solver"]
 ]
+PRODUCT = [*CORE, "tests/benchmark", "tests/diagrams", "tests/examples"]
 RELEASE = processes.command("build", "release", "-DCMAKE_COMPILE_WARNING_AS_ERROR=ON")
 
 
 def needs(given: Namespace) -> list[str]:
     """Everything that any step needs is installed before the first."""
-    return ["check" if given.quick else "test"]
+    return ["all" if given.which == "all" else "test"]
 
 
 def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = "release", **env: str) -> None:
@@ -38,13 +39,10 @@ def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = 
 
 
 def main(given: Namespace) -> None:
-    if given.quick:
-        step("formatting, lint, and the release build")
-        processes.side_by_side(processes.command("lint"), RELEASE)
-        step("tests of the core")
-        tests(*CORE)
-        step("done")
-        print("The quick checks passed; ./scripts/test runs all of them.")
+    if given.which != "all":
+        processes.check(*RELEASE)
+        tests(*(CORE if given.which == "quick" else PRODUCT))
+        print(f"The tests passed in {elapsed():.0f} s; ./scripts/test all runs every check.")
         return
     step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
     processes.side_by_side(processes.command("build", "asan"), RELEASE)
@@ -54,7 +52,7 @@ def main(given: Namespace) -> None:
     fuzzed, seconds = ROOT / "build" / "fuzz.out", os.environ.get("WHEEL_FUZZ_SECONDS", "60")
     with fuzzed.open("w") as file:
         fuzzing = processes.start(*processes.command("fuzz", seconds), stdout=file, stderr=STDOUT)
-        tests("tests", workers=1)  # some wait
+        tests("tests", *[str(path.relative_to(ROOT)) for path in sorted((ROOT / "lab").glob("*/tests"))], workers=1)
         code = fuzzing.wait()
     print(fuzzed.read_text(errors="replace"), end="", file=sys.stderr if code else sys.stdout)
     if code:

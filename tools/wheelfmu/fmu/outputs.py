@@ -69,9 +69,14 @@ def new_folder(place: Path) -> Iterator[Path]:
             yield Path(new)
 
 
+def elapsed() -> float:
+    """Seconds since this process began."""
+    return time.monotonic() - BEGIN
+
+
 def step(text: str) -> None:
     """A line above what a long command does next, with the seconds since it began."""
-    print(f"\n== {text} ({time.monotonic() - BEGIN:.0f} s)", flush=True)
+    print(f"\n== {text} ({elapsed():.0f} s)", flush=True)
 
 
 def deliver(source: Path, target: Path) -> None:

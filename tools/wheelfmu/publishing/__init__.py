@@ -1,1 +1,1 @@
-"""Tables of variables, figures in prose, pages from templates, the notebook, the site."""
+"""Tables of variables, figures in prose, pages from templates."""

@@ -16,7 +16,7 @@ from tabulate import tabulate
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
-TEMPLATES = tuple(ROOT / "tools" / "wheelfmu" / part / "templates" for part in ("publishing", "reports"))
+TEMPLATES = Path(__file__).parent / "templates"
 
 
 def said(*command: str) -> str:
@@ -84,9 +84,9 @@ def with_figures(text: str) -> str:
     return FIGURE.sub(filled, text)
 
 
-def page(template: str, **values: object) -> str:
-    """A page out of a template; an unknown name is an error."""
-    loader = FileSystemLoader(TEMPLATES)
+def page(template: str, folder: Path = TEMPLATES, **values: object) -> str:
+    """A page out of a template in a folder; an unknown name is an error."""
+    loader = FileSystemLoader(folder)
     pages = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     pages.filters |= {"table": table, "number": number}
     return re.sub(r"\n{3,}", "\n\n", pages.get_template(template).render(**values)).strip() + "\n"

@@ -1,6 +1,6 @@
 /* The C driver of the FMU. As a program, `driver LIBRARY GUID`, it prints a hash of the bits of each scene's
    trajectory, the same source for every platform. The reports load it as a library and time its functions
-   (tools/wheelfmu/reports/native.py). The paper's equations are not here. */
+   (lab/reports/native.py). The paper's equations are not here. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

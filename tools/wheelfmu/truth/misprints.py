@@ -8,13 +8,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from wheelfmu.fmu import equations as eq
-from wheelfmu.truth.paper_transcription import Paper, paper_table, papers_state
+from wheelfmu.truth.paper_transcription import Paper, paper_table, set_rolling
 
 WHEEL = paper_table()
 
 
 def papers_start() -> np.ndarray:
-    return papers_state(eq.start(eq.MULTIBODY, eq.paper_wheel(), eq.PAPER_START))
+    return set_rolling(WHEEL, np.array(eq.PAPER_START))
 
 
 @cache
@@ -25,7 +25,7 @@ def rolled(end: float, *printed: str) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """
 
     def rate(_t: float, y: np.ndarray) -> np.ndarray:
-        return np.concatenate([y[6:], Paper(WHEEL, y, printed).solve()[:6]])
+        return Paper(WHEEL, y, printed).rate
 
     def above_ground(_t: float, y: np.ndarray) -> float:
         return y[2]

@@ -1,6 +1,5 @@
-"""The paper's matrices and its system, (1)-(26), written once more in numpy, misprints included; then the product's
-state and derivative on top of it: omega_z, (21), in the place of phi_dot, and errors of the constraints that decay
-(Baumgarte).
+"""The paper's matrices and its system, (1)-(26), written once more in numpy, misprints included; and integrated with
+all its states (q, q_dot), which leave the constraints, plain and stabilised (Baumgarte).
 
 An independent transcription: nothing here calls the product. Fixed axes for O and forces, body axes
 for rotation, Euler angles psi, theta, phi. Works on whole tables of states (leading axes) and on
@@ -20,7 +19,6 @@ from wheelfmu.fmu import equations as eq
 from wheelfmu.truth.pointwise import ACCELERATIONS
 
 PSI, THETA, PHI = 3, 4, 5  # places of the angles in (25)
-PSI_DOT, SPIN = 9, 11  # SPIN: of phi_dot in (25), of omega_z in the product's state
 
 
 def matrix(*entries: np.ndarray | float) -> np.ndarray:
@@ -229,6 +227,16 @@ class Paper:
         return times(self.B, self.q_dot)
 
     @cached_property
+    def height_error(self) -> np.ndarray:
+        """Z_O less the height of (32), m."""
+        return self.height - self.wheel["r_0"] * self.sin_theta - self.wheel["r"]
+
+    @property
+    def rate(self) -> np.ndarray:
+        """(q_dot, q_ddot) of the free wheel."""
+        return np.concatenate([self.q_dot, self.solve()[..., :6]], axis=-1)
+
+    @cached_property
     def omega(self) -> np.ndarray:  # (8), in body axes
         return times(self.Q, self.beta_dot)
 
@@ -253,42 +261,61 @@ def paper_table(**changes: float) -> np.ndarray:
     return np.array([eq.values(eq.paper_wheel(**changes))]).view(np.dtype(eq.Parameters))[0, 0]
 
 
-# ---- the product's multibody form ----
+def set_rolling(wheel: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    """(q, q_dot) of (25) of wheels that begin to roll so: height and velocity of O by (32), (33)."""
+    height = wheel["r_0"] * np.sin(motions["theta"]) + wheel["r"]
+    names = ("psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
+    psi, theta, phi, *beta_dot = (motions[name] for name in names)
+    still = np.zeros_like(psi)
+    y = column(motions["X_O"], motions["Y_O"], height, psi, theta, phi, still, still, still, *beta_dot)
+    y[..., 6:9] = -Paper(wheel, y).slip
+    return y
 
 
-def papers_state(y: np.ndarray) -> np.ndarray:
-    """(q, q_dot) of (25) from the product's y: phi_dot = omega_z - psi_dot cos(theta)."""
-    out = np.array(y)
-    out[..., SPIN] -= y[..., PSI_DOT] * np.cos(y[..., THETA])
-    return out
-
-
-def products_state(q: np.ndarray) -> np.ndarray:
-    """The product's y from (q, q_dot): omega_z = phi_dot + psi_dot cos(theta)."""
-    out = np.array(q)
-    out[..., SPIN] += q[..., PSI_DOT] * np.cos(q[..., THETA])
-    return out
+# ---- all twelve states integrated: how far the constraints of (24) drift ----
 
 
 class Stabilised(Paper):
-    """(24) with -[B_dot]{q_dot} - a [B]{q_dot} in its last rows."""
+    """(24) with -[B_dot]{q_dot} - a [B]{q_dot} in its last rows, and a height that falls to that of (32) at the rate a
+    (Baumgarte): errors of the constraints decay, on the constraints nothing changes."""
 
     @cached_property
     def decay_rate(self) -> np.ndarray:
-        """a = 5 sqrt(|g| / (r_0 + r) + |omega|^2), 1/s; |g|: of the whole of gravity."""
+        """a = 5 sqrt(g / (r_0 + r) + |omega|^2), 1/s: never the stiffest part of the motion."""
         w = self.wheel
-        gravity = np.sqrt(w["g"] ** 2 + w["g_X"] ** 2 + w["g_Y"] ** 2)
-        return 5 * np.sqrt(gravity / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
-
-    @cached_property
-    def height_error(self) -> np.ndarray:
-        """Z_O less the height of (32), m."""
-        return self.height - self.wheel["r_0"] * self.sin_theta - self.wheel["r"]
+        return 5 * np.sqrt(w["g"] / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
 
     def system(self, kappa: np.ndarray | float, load: np.ndarray | None = None) -> tuple:
         K, right = super().system(kappa, load)
         right[..., 6:] -= self.decay_rate[..., None] * self.slip
         return K, right
+
+    @property
+    def rate(self) -> np.ndarray:
+        out = super().rate
+        out[..., 2] -= self.decay_rate * self.height_error
+        return out
+
+
+FORMS = {"plain": Paper, "stabilised": Stabilised}
+
+
+def marched(form: type[Paper], wheel: np.ndarray, y: np.ndarray, step: float, count: int) -> np.ndarray:
+    """The state of the free wheel after `count` steps of the classical Runge-Kutta method, s each."""
+
+    def rate(at: np.ndarray) -> np.ndarray:
+        return form(wheel, at).rate
+
+    for _ in range(count):
+        k_1 = rate(y)
+        k_2 = rate(y + step / 2 * k_1)
+        k_3 = rate(y + step / 2 * k_2)
+        k_4 = rate(y + step * k_3)
+        y = y + step / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4)
+    return y
+
+
+# ---- a wheel carrier; the laws of friction ----
 
 
 class Carried(Paper):
@@ -341,13 +368,3 @@ def dynamics_of(paper: Paper, x: np.ndarray, scenes: np.ndarray) -> np.ndarray:
     out["lambda_"], out["tau"] = x[:, 6:9], x[:, -1]
     out["omega_z_dot"] = omega_z_dot(paper, x, scenes)
     return out
-
-
-def stabilised_rate(scenes: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The product's y_dot: the stabilised (24), and the height drawn to that of (32)."""
-    paper = Stabilised(scenes["wheel"], papers_state(y))
-    x = solved(paper, scenes)
-    sinking = paper.decay_rate * paper.height_error
-    height_rate = paper.q_dot[:, 2] - sinking
-    positions = np.column_stack([paper.q_dot[:, :2], height_rate, paper.q_dot[:, 3:]])
-    return np.column_stack([positions, x[:, :5], omega_z_dot(paper, x, scenes)])

@@ -1,0 +1,29 @@
+"""Writes the live page, on which the wheel runs in a browser. One offline file contains wheel.fmu's sources compiled to
+WebAssembly with the releases' compiler; its trajectories are bit-identical to the released FMU's
+(lab/lesson/README.md)."""
+
+from argparse import Namespace
+from pathlib import Path
+
+from wheelfmu.fmu.paths import ROOT
+
+STAYS, NEEDS = True, ("lesson", "release")
+OPTIONS = {
+    "file": {
+        "nargs": "?",
+        "type": Path,
+        "default": ROOT / "results" / "wheel_live.html",
+        "metavar": "FILE",
+        "help": "if not given, results/wheel_live.html",
+    },
+    "--overwrite": {"action": "store_true", "help": "replaces FILE even if this command did not write it"},
+}
+
+
+def main(given: Namespace) -> None:
+    from lab.lesson.__main__ import live
+    from wheelfmu.release import compiling
+
+    folder = ROOT / "build" / "wasm"
+    compiling.build(folder, compiling.WASM, "wheel_page")
+    live(folder / "wheel_page.wasm", given.file, overwrite=given.overwrite)

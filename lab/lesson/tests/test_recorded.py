@@ -1,0 +1,170 @@
+"""The page of recorded motions in headless Chromium: the paper's two scenes, and a car."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+from scipy.spatial.transform import Rotation
+from support.bounds import EPSILON, absolute_error, beyond, within
+
+from wheelfmu.truth.reference.tables import read_table
+
+from .pages import POSE, RECORD, TURN, opened, view, write_csv
+
+INSTANTS = (0.0, 0.37, 1.0, 1.23, 2.5, 3.99, 5.0, 6.66, 8.01, 10.0)
+MATRIX = """([t, name]) => {
+  page.player.seek(t);
+  page.pose();
+  const {road, scene} = page.stage;
+  const part = scene.getObjectByName(name);
+  part.updateWorldMatrix(true, false);
+  return part.matrixWorld.clone().premultiply(road.matrixWorld.clone().invert()).elements;
+}"""
+
+
+def pose(place: list[float], axes: str, angles: list[float]) -> np.ndarray:
+    """4 x 4 matrix of the body axes in fixed axes, turned about its own axes in this order."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = Rotation.from_euler(axes, angles).as_matrix()
+    matrix[:3, 3] = place
+    return matrix
+
+
+def pose_of(row) -> np.ndarray:
+    """That of a wheel: z-x-z angles of the paper, (3)."""
+    return pose([row[name] for name in ("X_O", "Y_O", "Z_O")], "ZXZ", [row[name] for name in ("psi", "theta", "phi")])
+
+
+def shown(page: Page, t: float, name: str) -> np.ndarray:
+    """The pose of a part of the scene in the road's axes."""
+    return np.reshape(page.evaluate(MATRIX, [t, name]), (4, 4)).T
+
+
+@pytest.mark.parametrize("name", ["free", "friction"])
+def test_the_wheels_pose_in_the_scene_is_that_of_the_file(recorded, scenes, name):
+    there = [shown(recorded, t, f"spin:{name}") for t in INSTANTS]
+    rows = [round(t / 0.01) for t in INSTANTS]
+    within(absolute_error(there, [pose_of(scenes[name][k]) for k in rows]), 64 * EPSILON, "entries of the pose")
+    beyond(absolute_error(there, [pose_of(scenes[name][abs(k - 1)]) for k in rows]), 1e-2, "pose of the row before")
+
+
+def test_between_the_rows_the_pose_is_that_of_the_fmu(recorded, scenes, simulate):
+    fine = simulate(output_interval=0.005, output=POSE, start_values={"s": 0.03})
+    middles = range(25, 2000, 50)
+    there = [shown(recorded, 0.005 * k, "spin:friction") for k in middles]
+    exact, nearest = ([pose_of(row) for row in rows] for rows in (fine[25::50], scenes["friction"][12::25]))
+    within(absolute_error(there, exact), 1e-5, "entries of the pose")  # largest where the friction changes sign within
+    beyond(absolute_error(nearest, exact), 1e-2, "entries of the pose of the nearest row")
+
+
+@pytest.fixture(scope="module")
+def car(window, tmp_path_factory) -> Iterator[Page]:
+    """A car's body that turns, and a wheel that spins by ten radians from row to row, on a road that rises."""
+    t = np.arange(11) * 0.1
+    body = {"X": t, "Y": 2 * t, "Z": 0.6 + 0 * t, "yaw": 0.8 * t, "pitch": 0.3 * t, "roll": -0.4 * t}
+    wheel = {"X_O": 0 * t, "Y_O": 0 * t, "psi": 0 * t, "theta": 0 * t + np.pi / 2, "phi": -100 * t}
+    named = {f"body.{k}": v for k, v in body.items()} | {f"wheel_fl.{k}": v for k, v in wheel.items()}
+    path = write_csv(tmp_path_factory.mktemp("car") / "car.csv", {"time": t} | named)
+    view(path, "--slope", "10deg", "--slope_direction", "1.5")
+    with opened(window, path.with_suffix(".html")) as page:
+        yield page
+
+
+def test_a_fast_wheel_never_seems_to_run_backwards(car):
+    """The short way between the attitudes of two rows would be 2.6 rad the other way."""
+    matrices = [shown(car, 0.1 + 0.001 * k, "spin:wheel_fl") for k in range(100)]
+    steps = [a[:3, :3].T @ b[:3, :3] for a, b in zip(matrices, matrices[1:], strict=False)]
+    assert np.allclose([np.arctan2(step[1, 0], step[0, 0]) for step in steps], -0.1)
+
+
+def test_a_cars_body_is_turned_by_yaw_then_pitch_then_roll(car):
+    expected = pose([0.7, 1.4, 0.6], "ZYX", [0.56, 0.21, -0.28])
+    within(absolute_error(shown(car, 0.7, "body:body"), expected), 64 * EPSILON, "entries of the pose")
+
+
+def test_a_slope_that_the_command_gives_tilts_the_ground_and_is_marked_uphill(car, recorded):
+    slope = np.radians(10)
+    car.evaluate("page.player.seek(0); page.draw()")
+    up = [np.sin(slope) * np.cos(1.5), np.sin(slope) * np.sin(1.5), np.cos(slope)]
+    assert car.evaluate(TURN, up) == pytest.approx([0, 0, 1])
+    visible, direction = car.evaluate("(({visible, rotation}) => [visible, rotation.z])(page.stage.models[1].uphill)")
+    assert visible and direction == 1.5
+    assert not recorded.evaluate("page.pose() ?? page.stage.models[0].uphill.visible")
+
+
+def test_the_values_that_a_file_holds_are_listed(window, scenes, tmp_path):
+    rows = {name: scenes["friction"][name] for name in ("time", *POSE)}
+    path = write_csv(tmp_path / "one.csv", rows | {"s": 0.03 + 0 * rows["time"], "m": 20 + 0 * rows["time"]})
+    head, *lines = path.read_text().splitlines()
+    path.write_text("\n".join([f'{head},"keep_contact"', *(f"{line},False" for line in lines)]))
+    view(path)
+    with opened(window, path.with_suffix(".html")) as page:
+        page.locator("[popovertarget=values]").click()
+        found = [row.replace("\t", "|") for row in page.locator("#values tr").all_inner_texts()]
+    assert found == ["parameter|one|unit", "m|20|kg", "r_0|0.3|m", "r|0.05|m", "s|0.03|m", "keep_contact|0|"]
+
+
+TABLE = """const {Table} = await import('#table');
+  const table = new Table(Object.fromEntries(columns.map(([name, list]) => [name, Float64Array.from(list)])));"""
+PHASES = f"async (columns) => {{ {TABLE} return (await import('#phases')).phasesOf(table); }}"
+ENDING = f"async (columns) => {{ {TABLE} return (await import('#labels')).endingOf(table, 10); }}"
+
+
+def phases(page: Page, rows: np.ndarray, leave_out: str = "") -> dict[str, list]:
+    """Stick phases and transitions as the page reads them from these rows."""
+    return page.evaluate(PHASES, [[n, rows[n].tolist()] for n in rows.dtype.names if n != leave_out])
+
+
+def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
+    free, friction = recorded.evaluate("page.wheels.map(({phases}) => phases)")
+    begin, end = friction["sticks"][0]
+    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-3, "begin of it, s")  # rows are 0.01 s apart
+    beyond(end, 1.3, "end of the first stick, s")
+    assert free == {"sticks": [], "slides": [], "transitions": []}
+
+
+def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase(recorded, simulate):
+    rows = simulate(output_interval=0.1, output=RECORD, start_values={"s": 0.03})
+    found = phases(recorded, rows)
+    instants = read_table("paper_friction_events")["t"][1:]
+    assert len(found["transitions"]) == len(instants) == 37
+    within(absolute_error(found["transitions"], instants), 0.1, "instants of all, s")  # the distance of two rows
+    assert len(found["sticks"]) == (read_table("paper_friction_events")["mode"] == 0).sum()
+    assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37
+
+
+def test_a_stick_shorter_than_the_rows_begins_and_ends_where_the_spin_is_zero(recorded):
+    """Held from 0.523 s to 0.527 s, between the rows at 0.52 s and 0.53 s."""
+    t = np.arange(101) * 0.01
+    omega = np.where(t < 0.525, t - 0.523, 0.527 - t)
+    names = ["time", "omega_z", "friction_mode", "n_events"]
+    rows = np.rec.fromarrays([t, omega, np.sign(omega), 2.0 * (t > 0.525)], names=names)
+    (stick,) = phases(recorded, rows)["sticks"]
+    within(absolute_error(stick, [0.523, 0.527]), 1e-12, "begin and end of the stick, s")
+    assert phases(recorded, rows, leave_out="n_events")["sticks"] == []
+
+
+def test_the_force_points_along_lambda(recorded, scenes):
+    recorded.evaluate("page.player.seek(5); page.switches.flip('force', true); page.pose()")
+    direction = recorded.evaluate("""() => {
+      const {force} = page.stage.models[1];
+      return force.up.clone().set(0, 0, 1).applyQuaternion(force.quaternion).toArray();
+    }""")
+    force = np.array([scenes["friction"][500][f"lambda_{k}"] for k in (1, 2, 3)])
+    within(abs(direction @ force / np.linalg.norm(force) - 1), 1e-12, "cosine between arrow and force off 1")
+
+
+@pytest.mark.parametrize(
+    ("theta", "N", "end", "sentence"),
+    [
+        (0.0, 196, 0.59282, "lies flat at 0.5928 s"),
+        (np.pi, 196, 0.7, "lies flat at 0.7 s"),
+        (1.0, 0, 1.25, "lifted off at 1.25 s"),
+        (1.0, 196, 1.25, "its record ends at 1.25 s"),
+        (0.3, 196, 10.0, None),
+    ],
+)
+def test_a_motion_that_ends_early_says_why(recorded, theta, N, end, sentence):
+    rows = {"time": [0.0, 0.5, end], "theta": [1.0, 1.0, theta], "lambda_3": [196, 150, N]}
+    assert recorded.evaluate(ENDING, list(rows.items())) == sentence

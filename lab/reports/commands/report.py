@@ -1,0 +1,22 @@
+"""Measures accuracy, speed and more, and writes the pages of docs/results."""
+
+import os
+from argparse import Namespace
+
+from lab.reports import options
+from wheelfmu.commands.build import build
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+
+NEEDS = ("reports", "studies")
+reads = options.arguments
+
+
+def main(given: Namespace) -> int:
+    if not (given.render or given.check):
+        build("release")
+    os.environ["OMP_NUM_THREADS"] = "1"  # before numpy is loaded
+    from lab.reports.__main__ import main as report
+
+    with alone(ROOT / "docs" / "results"):
+        return report(given)

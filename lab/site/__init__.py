@@ -1,0 +1,1 @@
+"""The site of all documents, by Sphinx."""

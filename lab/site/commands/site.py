@@ -1,0 +1,38 @@
+"""Builds the site of all documents, the folder build/site, for any static host. It has search and formulas, reports,
+the notebook, the reference of the C header, and the live page, and is self-contained; a broken link fails the build."""
+
+import shutil
+from argparse import Namespace
+
+from wheelfmu.commands import processes
+from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.paths import ROOT
+
+SOURCE, SITE = ROOT / "lab" / "site", ROOT / "build" / "site"
+OPTIONS = {
+    "--documents": {
+        "action": "store_true",
+        "help": "without the live page, which is compiled with the releases' compiler",
+    }
+}
+
+
+def live(given: Namespace) -> bool:
+    return not given.documents and (ROOT / "lab" / "lesson").exists()
+
+
+def needs(given: Namespace) -> list[str]:
+    return ["site", *["lesson", "release"] * live(given)]
+
+
+def main(given: Namespace) -> None:
+    with alone(SITE):
+        shutil.rmtree(SITE, ignore_errors=True)
+        SITE.mkdir(parents=True)
+        page = SITE / "live.html"
+        if live(given):
+            processes.check(*processes.command("page", page))
+        how = ["-q", "-E", "-n", "-W", "--keep-going", "-j", "auto", "-b", "html"]
+        where = ["-c", SOURCE, "-d", ROOT / "build" / "site-doctrees", "-A", f"live={page if page.exists() else ''}"]
+        processes.check(*processes.python("sphinx", *how, *where, ROOT, SITE))
+    print("The site is build/site; open build/site/index.html, or copy the folder to a host.")
