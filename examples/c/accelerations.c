@@ -24,7 +24,7 @@ int main(void) {
   print("rolling", &rolling, y);
   print("driven", &driven, y);
 
-  y[wheel_reduced.spin_index] = 0; /* omega_z = 0: what moment would hold it there? */
+  y[WHEEL_OMEGA_3] = 0; /* omega_z = 0: what moment would hold it there? */
   WheelScene held = wheel_scene(&wheel, &drive, (WheelFriction){.kind = WHEEL_HELD});
   print("held", &held, y);
   return 0;

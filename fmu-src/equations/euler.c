@@ -1,69 +1,52 @@
-/* The formulation of model exchange: the reduced equations in the paper's variables, Euler angles and their rates.
- * State y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z; fixed axes, SI. Nothing of it is computed anew when
- * it is read, so a state that was set is read back to the bit. Domain: 0 < theta < pi, see wheel_equations.h. */
+/* The states of model exchange, x: the paper's variables, Euler angles and their rates, beside the state y of the
+ * reduced form. Fixed axes, SI. x is stored and y follows from it: a state that was set is read back to the bit. */
 #include <math.h>
-#include <string.h>
 
 #include "wheel_equations.h"
 
-enum { X_O, Y_O, PSI, THETA, PHI, THETA_DOT, PSI_DOT, SPIN };
-
-static void reduce(const double* y, double* reduced) {
-  reduced[WHEEL_THETA] = y[THETA];
-  reduced[WHEEL_OMEGA_1] = y[THETA_DOT];
-  reduced[WHEEL_OMEGA_2] = y[PSI_DOT] * sin(y[THETA]);
-  reduced[WHEEL_OMEGA_3] = y[SPIN];
-  reduced[WHEEL_PSI] = y[PSI];
-  reduced[WHEEL_PHI] = y[PHI];
-  reduced[WHEEL_X_O] = y[X_O];
-  reduced[WHEEL_Y_O] = y[Y_O];
+void wheel_euler_states(const double* y, double psi_dot, double* x) {
+  x[WHEEL_EULER_X_O] = y[WHEEL_X_O];
+  x[WHEEL_EULER_Y_O] = y[WHEEL_Y_O];
+  x[WHEEL_EULER_PSI] = y[WHEEL_PSI];
+  x[WHEEL_EULER_THETA] = y[WHEEL_THETA];
+  x[WHEEL_EULER_PHI] = y[WHEEL_PHI];
+  x[WHEEL_EULER_THETA_DOT] = y[WHEEL_OMEGA_1];
+  x[WHEEL_EULER_PSI_DOT] = psi_dot;
+  x[WHEEL_EULER_OMEGA_Z] = y[WHEEL_OMEGA_3];
 }
 
-static void start(const WheelParameters* wheel, const WheelMotion* motion, double* y) {
-  (void)wheel;
-  double spin = motion->phi_dot + motion->psi_dot * cos(motion->theta);
-  const double same[] = {motion->X_O, motion->Y_O,       motion->psi,     motion->theta,
-                         motion->phi, motion->theta_dot, motion->psi_dot, spin};
-  memcpy(y, same, sizeof same);
+void wheel_reduced_state(const double* x, double* y) {
+  y[WHEEL_THETA] = x[WHEEL_EULER_THETA];
+  y[WHEEL_OMEGA_1] = x[WHEEL_EULER_THETA_DOT];
+  y[WHEEL_OMEGA_2] = x[WHEEL_EULER_PSI_DOT] * sin(x[WHEEL_EULER_THETA]);
+  y[WHEEL_OMEGA_3] = x[WHEEL_EULER_OMEGA_Z];
+  y[WHEEL_PSI] = x[WHEEL_EULER_PSI];
+  y[WHEEL_PHI] = x[WHEEL_EULER_PHI];
+  y[WHEEL_X_O] = x[WHEEL_EULER_X_O];
+  y[WHEEL_Y_O] = x[WHEEL_EULER_Y_O];
+}
+
+static double phi_dot_of(const double* x) {
+  return x[WHEEL_EULER_OMEGA_Z] - x[WHEEL_EULER_PSI_DOT] * cos(x[WHEEL_EULER_THETA]);
 }
 
 /* psi_dot = omega_2 / sin(theta), differentiated. */
-static double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  double reduced[WHEEL_REDUCED_STATES], rates[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  double N = wheel_reduced.derivative(scene, reduced, rates);
-  y_dot[X_O] = rates[WHEEL_X_O];
-  y_dot[Y_O] = rates[WHEEL_Y_O];
-  y_dot[PSI] = y[PSI_DOT];
-  y_dot[THETA] = y[THETA_DOT];
-  y_dot[PHI] = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
-  y_dot[THETA_DOT] = rates[WHEEL_OMEGA_1];
-  y_dot[PSI_DOT] = (rates[WHEEL_OMEGA_2] - y[THETA_DOT] * y[PSI_DOT] * cos(y[THETA])) / sin(y[THETA]);
-  y_dot[SPIN] = rates[WHEEL_OMEGA_3];
-  return N;
+void wheel_euler_rates(const double* x, const double* y_dot, double* x_dot) {
+  double theta = x[WHEEL_EULER_THETA], theta_dot = x[WHEEL_EULER_THETA_DOT], psi_dot = x[WHEEL_EULER_PSI_DOT];
+  x_dot[WHEEL_EULER_X_O] = y_dot[WHEEL_X_O];
+  x_dot[WHEEL_EULER_Y_O] = y_dot[WHEEL_Y_O];
+  x_dot[WHEEL_EULER_PSI] = psi_dot;
+  x_dot[WHEEL_EULER_THETA] = theta_dot;
+  x_dot[WHEEL_EULER_PHI] = phi_dot_of(x);
+  x_dot[WHEEL_EULER_THETA_DOT] = y_dot[WHEEL_OMEGA_1];
+  x_dot[WHEEL_EULER_PSI_DOT] = (y_dot[WHEEL_OMEGA_2] - theta_dot * psi_dot * cos(theta)) / sin(theta);
+  x_dot[WHEEL_EULER_OMEGA_Z] = y_dot[WHEEL_OMEGA_3];
 }
 
-static void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.kinematics(wheel, reduced, out);
-  out->psi_dot = y[PSI_DOT];
-  out->phi_dot = y[SPIN] - y[PSI_DOT] * cos(y[THETA]);
+void wheel_euler_kinematics(const WheelParameters* wheel, const double* x, WheelKinematics* out) {
+  double y[WHEEL_REDUCED_STATES];
+  wheel_reduced_state(x, y);
+  wheel_reduced.kinematics(wheel, y, out);
+  out->psi_dot = x[WHEEL_EULER_PSI_DOT];
+  out->phi_dot = phi_dot_of(x);
 }
-
-static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  double reduced[WHEEL_REDUCED_STATES];
-  reduce(y, reduced);
-  wheel_reduced.dynamics(scene, reduced, out);
-}
-
-const WheelFormulation wheel_euler = {
-    .states = WHEEL_REDUCED_STATES,
-    .start = start,
-    .derivative = derivative,
-    .spin_index = SPIN,
-    .tilt_index = THETA,
-    .slip_index = -1,
-    .kinematics = kinematics,
-    .dynamics = dynamics,
-};

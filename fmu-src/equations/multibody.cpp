@@ -235,9 +235,6 @@ constexpr WheelFormulation formulation = {
     .states = slides ? WHEEL_SLIDING_STATES : WHEEL_REDUCED_STATES,
     .start = start<slides>,
     .derivative = derivative<slides>,
-    .spin_index = WHEEL_OMEGA_3,
-    .tilt_index = WHEEL_THETA,
-    .slip_index = slides ? int{WHEEL_SLIP} : -1,
     .kinematics = kinematics<slides>,
     .dynamics = dynamics<slides>,
 };

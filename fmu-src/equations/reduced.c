@@ -230,9 +230,6 @@ const WheelFormulation wheel_reduced = {
     .states = WHEEL_REDUCED_STATES,
     .start = start,
     .derivative = derivative,
-    .spin_index = WHEEL_OMEGA_3,
-    .tilt_index = WHEEL_THETA,
-    .slip_index = -1,
     .kinematics = kinematics,
     .dynamics = dynamics,
 };

@@ -234,9 +234,6 @@ const WheelFormulation wheel_sliding = {
     .states = WHEEL_SLIDING_STATES,
     .start = start,
     .derivative = derivative,
-    .spin_index = WHEEL_OMEGA_3,
-    .tilt_index = WHEEL_THETA,
-    .slip_index = WHEEL_SLIP,
     .kinematics = kinematics,
     .dynamics = dynamics,
 };

@@ -2,8 +2,7 @@
  *
  * A torus-shaped wheel rolls without slip on the plane Z = 0, with or without rolling resistance, or slides on it under
  * Coulomb's friction. Two formulations compute the same motion for any principal moments of inertia:
- *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states; as `euler` with
- *              the Euler angles' rates in the place of the angular velocity
+ *   reduced    Newton and Euler with the constraints solved in advance: they hold exactly; 8 states
  *   multibody  the paper's system (24), a matrix of 9 x 9 solved at each state, which is that of `reduced`
  * While the wheel slides, two constraints are released; the slip joins the state of `sliding` and `multibody_sliding`.
  * In each the wheel may be on a wheel carrier, which directs the axle (WheelScene.guided).
@@ -19,7 +18,7 @@
 extern "C" {
 #endif
 
-enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10, WHEEL_MAX_STATES = 12 };
+enum { WHEEL_REDUCED_STATES = 8, WHEEL_SLIDING_STATES = 10 };
 
 /* Places in the state of `wheel_reduced`, angular velocity along e1, e2, e3; and in that of `wheel_sliding`
  * behind them the slip |u| and its direction chi. */
@@ -105,7 +104,7 @@ typedef struct WheelMotion {
   double psi, theta, phi;             /* rad */
   double psi_dot, theta_dot, phi_dot; /* rad/s */
   double X_O, Y_O;                    /* m */
-  double slip_x, slip_y;              /* m/s, of the material point at the contact, see WheelFormulation.slip_index */
+  double slip_x, slip_y;              /* m/s, of the material point at the contact */
 } WheelMotion;
 
 /* Positions and velocities, fixed axes. */
@@ -146,12 +145,6 @@ typedef struct WheelFormulation {
   void (*start)(const WheelParameters* wheel, const WheelMotion* motion, double* y);
   /* y_dot = f(y), and the normal force N that goes with it; non-finite or meaningless outside 0 < theta < pi. */
   double (*derivative)(const WheelScene* scene, const double* y, double* y_dot);
-  /* Where y holds omega_z, (21), and theta. */
-  int spin_index, tilt_index;
-  /* Where y holds |u|, m/s, and chi behind it; -1: the wheel rolls. u = |u| (cos(chi), sin(chi)) is the slip, the
-   * velocity of the wheel's material point at the contact, along e1 and across it to the left. At |u| = 0 the rate of
-   * chi is written as zero: it is any, or infinite. */
-  int slip_index;
   void (*kinematics)(const WheelParameters* wheel, const double* y, WheelKinematics* out);
   void (*dynamics)(const WheelScene* scene, const double* y, WheelDynamics* out);
 } WheelFormulation;
@@ -160,20 +153,40 @@ typedef struct WheelFormulation {
  * enter, psi does only where F_X or F_Y is not zero. */
 extern const WheelFormulation wheel_reduced;
 
-/* y = X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z: the reduced equations in the paper's variables, the
- * state of model exchange. */
-extern const WheelFormulation wheel_euler;
-
 /* The state of `wheel_reduced`; its rates, accelerations and reactions by (24), from the q and q_dot of (25) that
  * satisfy (19) and (32) there. */
 extern const WheelFormulation wheel_multibody;
 
 /* y = that of `wheel_reduced`, |u| and chi, by WHEEL_THETA and on: Newton and Euler, with the ground's horizontal force
- * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. */
+ * -mu_slide N u / |u| given and the vertical constraint alone solved in advance. u = |u| (cos(chi), sin(chi)) is the
+ * slip, the velocity of the wheel's material point at the contact, along e1 and across it to the left. At |u| = 0 the
+ * rate of chi is written as zero: it is any, or infinite. */
 extern const WheelFormulation wheel_sliding;
 
 /* The state of `wheel_sliding`: (24) with the law of friction in the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
+
+/* The states of model exchange, x: X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z. The motion that the
+ * state y of `wheel_reduced` describes, in the paper's variables. */
+enum {
+  WHEEL_EULER_X_O,
+  WHEEL_EULER_Y_O,
+  WHEEL_EULER_PSI,
+  WHEEL_EULER_THETA,
+  WHEEL_EULER_PHI,
+  WHEEL_EULER_THETA_DOT,
+  WHEEL_EULER_PSI_DOT,
+  WHEEL_EULER_OMEGA_Z,
+  WHEEL_EULER_STATES
+};
+/* (y, and psi_dot, whose last bit y has not) => x. */
+void wheel_euler_states(const double* y, double psi_dot, double* x);
+/* x => y. */
+void wheel_reduced_state(const double* x, double* y);
+/* (x, and y_dot there) => x_dot. */
+void wheel_euler_rates(const double* x, const double* y_dot, double* x_dot);
+/* What is a state in x is read from it to the bit. */
+void wheel_euler_kinematics(const WheelParameters* wheel, const double* x, WheelKinematics* out);
 
 WheelSlip wheel_slip(const WheelScene* scene, const double* reduced, double chi);
 

@@ -24,7 +24,7 @@ bool is_unknown(fmi2ValueReference v) { return v >= wheel::stored_count && wheel
 // depend on the parameters.
 bool is_known(const Instance& i, fmi2ValueReference v) {
   const bool exchanged = i.wheel.demand.kind == wheel::Kind::model_exchange, begun = has_begun(i.wheel.run.phase);
-  return is_input(v) || (begun ? exchanged && wheel::state_index_of(v) >= 0 : v < wheel::stored_count);
+  return is_input(v) || (begun ? exchanged && wheel::place_in_x(v) >= 0 : v < wheel::stored_count);
 }
 
 template <class Fits>

@@ -81,7 +81,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
   return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
-    std::copy_n(x, n, i.wheel.run.y);
+    wheel::set_states(i.wheel, x);
     return fmi2OK;
   });
 }

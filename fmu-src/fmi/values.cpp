@@ -46,7 +46,7 @@ bool check_settable(const Instance& i, fmi2ValueReference variable) {
   const bool running = is_running(i.wheel.run.phase);
   if (variable < wheel::stored_count)
     return i.check(!running || row.role != Role::parameter, "%s: \"%s\" cannot be set after initialization.", row.name);
-  return i.check(running && i.wheel.demand.kind == wheel::Kind::model_exchange && wheel::state_index_of(variable) >= 0,
+  return i.check(running && i.wheel.demand.kind == wheel::Kind::model_exchange && wheel::place_in_x(variable) >= 0,
                  "%s: \"%s\" is calculated and cannot be set.", row.name);
 }
 

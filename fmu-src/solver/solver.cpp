@@ -144,7 +144,8 @@ void Solver::read(double t, double* y) const {
   step_.read(t, 0, problem_.states, y);
 }
 
-// Fields are written only when they are read; a solver that is saved stays as it is.
+// Fields are written only when they are read; a solver that is saved stays as it is, but for counts above the largest
+// that is saved, at which they stay.
 void Solver::visit(support::Archive& archive) {
   step_.visit(archive, problem_.states);
   archive.range(known_until_, step_.start, step_.end);

@@ -18,7 +18,7 @@ bool has_layer_ahead(const Setup& setup, const InForce& now) {
 // (t, y) => how far the spin is from the edge of the layer, or the law from being stiff
 double way_to_layer(const Setup& setup, const InForce& now, double t, const double* y) {
   if (!now.layered) return softness_of(setup, now.scene_at(t), y);
-  const double omega_z = y[setup.formulation->spin_index], edge = layer_edge(setup);
+  const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
   const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
   return (now.in_layer() ? inside : outside) / setup.rate_scale;
 }
@@ -39,20 +39,20 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 // that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
   const WheelFriction& law = now.scene.friction;
-  const double spin = y[setup.formulation->spin_index] / setup.rate_scale;
+  const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
     return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
   return -now.scene.load.brake / setup.moment_scale;
 }
 
-int spin_alone(const Setup& setup, const InForce& now) {
-  return now.scene.friction.kind == WHEEL_ROLLING ? setup.formulation->spin_index : -1;
+int spin_alone(const Setup&, const InForce& now) {
+  return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1;
 }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;
-  if (law != WHEEL_FRICTIONLESS) y[setup.formulation->spin_index] = 0;
+  if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
   decide_law(setup, t, y, now, law == WHEEL_HELD);
 }
 
@@ -84,9 +84,7 @@ double pressure_of(const Setup& setup, const double*, double N) { return N / set
 // (N) => below zero where it is infinite: the wheel jams
 double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // (y) => rad from where the wheel counts as flat
-double height_of(const Setup& setup, const double* y, double) {
-  return angle_from_flat(y[setup.formulation->tilt_index]) - flat_angle;
-}
+double height_of(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
 void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
 

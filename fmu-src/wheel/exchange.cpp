@@ -20,24 +20,33 @@ constexpr double distance = 1e-12;
 // before the sign changes, and would stop there again and again.
 constexpr double soon = 1e-7;
 
+// In the order of x: its variables, and the states of y to which they belong.
 constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
                                         variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
-static_assert(std::size(state_variables) == state_count);
+constexpr int states_of_y[] = {WHEEL_X_O, WHEEL_Y_O,     WHEEL_PSI,     WHEEL_THETA,
+                               WHEEL_PHI, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3};
+static_assert(std::size(state_variables) == state_count && std::size(states_of_y) == state_count);
 
-void keep_above_ground(const Setup& setup, double* y) {
-  double& theta = y[setup.formulation->tilt_index];
+void keep_above_ground(double* x) {
+  double& theta = x[WHEEL_EULER_THETA];
   theta = std::clamp(theta, flat_angle, 2 * upright - flat_angle);
+}
+
+// (scene, x, y) => x_dot
+void rates_of_x(const Setup& setup, const WheelScene& scene, const double* x, const double* y, double* x_dot) {
+  wheel_euler_rates(x, rates_of(setup, scene, y).y_dot, x_dot);
 }
 
 // (row, ahead: s) => its margin at the instant reached, or `ahead` later along the present rates
 double margin_at(const EventRow& row, const Setup& setup, const Run& run, double ahead = 0) {
-  double y[WHEEL_MAX_STATES];
-  std::copy_n(run.y, WHEEL_MAX_STATES, y);
+  double x[state_count], x_dot[state_count], y[max_states] = {};
+  std::copy_n(run.x, state_count, x);
   if (ahead > 0) {
-    const Rates rates = rates_of(setup, run.in_force.scene, run.y);
-    for (int i = 0; i < state_count; ++i) y[i] += ahead * rates.y_dot[i];
+    rates_of_x(setup, run.in_force.scene, run.x, run.y, x_dot);
+    for (int i = 0; i < state_count; ++i) x[i] += ahead * x_dot[i];
   }
-  if (row.event != Event::lies_flat) keep_above_ground(setup, y);
+  if (row.event != Event::lies_flat) keep_above_ground(x);
+  wheel_reduced_state(x, y);
   return margin_of(row, setup, run.in_force, run.t + ahead, y);
 }
 
@@ -55,9 +64,9 @@ bool has_occurred(const EventRow& row, const Setup& setup, const Run& run) {
 // the caller has set it, and it is kept.
 bool is_led(const Setup& setup, const Run& run) {
   const WheelScene& scene = run.in_force.scene;
-  const double spin = run.y[setup.formulation->spin_index] / setup.rate_scale;
+  const double spin = run.y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
-  const double omega_z_dot = rates_of(setup, scene, run.y).y_dot[setup.formulation->spin_index];
+  const double omega_z_dot = rates_of(setup, scene, run.y).y_dot[WHEEL_OMEGA_3];
   const double rate = scene.friction.sigma * omega_z_dot / setup.rate_scale;
   return scene.friction.sigma * spin >= std::fmin(rate, 0) * setup.longest_step - spin_error;
 }
@@ -78,58 +87,13 @@ void decide_friction(const Setup& setup, Run& run, bool led) {
     decide_law(setup, run.t, run.y, run.in_force);
 }
 
-}  // namespace
-
-int indicator_count() {
-  const auto is_exchanged = [](const EventRow& row) { return row.exchanged; };
-  return static_cast<int>(std::count_if(std::begin(event_rows), std::end(event_rows), is_exchanged));
-}
-
-int state_index_of(unsigned variable) {
-  const auto* found = std::find(std::begin(state_variables), std::end(state_variables), variable);
-  return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
-}
-
-void apply_at_once(Wheel& w) {
-  InForce& now = w.run.in_force;
-  const InForce before = now;
-  apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
-  w.demand.news = News::none;
-  if (now.road == before.road || w.run.phase == Phase::event_mode) return;
-  decide_law(w.setup, w.run.t, w.run.y, now);
-  log_changes(w, before);
-}
-
-void states(Wheel& w, double* x) { std::copy_n(w.run.y, state_count, x); }
-
-void nominals(Wheel& w, double* x) { scales_at(w.setup, w.run.y[w.setup.formulation->spin_index], x); }
-
-void derivatives(Wheel& w, double* x_dot) {
-  double y[WHEEL_MAX_STATES];
-  std::copy_n(w.run.y, WHEEL_MAX_STATES, y);
-  keep_above_ground(w.setup, y);
-  ++w.run.counted.rhs;
-  w.setup.formulation->derivative(&w.run.in_force.scene, y, x_dot);
-}
-
-void indicators(Wheel& w, double* z) {
-  ++w.run.counted.roots;
-  for (const EventRow& row : event_rows)
-    if (row.exchanged) *z++ = indicator(row, w.setup, w.run);
-}
-
-bool has_event(Wheel& w) {
-  ++w.run.counted.roots;
-  return std::any_of(std::begin(event_rows), std::end(event_rows),
-                     [&](const EventRow& row) { return row.exchanged && indicator(row, w.setup, w.run) <= 0; });
-}
-
-bool decide(Wheel& w) {
+// What `decide` does, in y. omega_z is the state that an event changes.
+bool decide_anew(Wheel& w) {
   const Setup& setup = w.setup;
   Run& run = w.run;
   const InForce before = run.in_force;
   const WheelFriction& law = before.scene.friction;
-  double& omega_z = run.y[setup.formulation->spin_index];
+  double& omega_z = run.y[WHEEL_OMEGA_3];
   const double spin = omega_z;
   const bool led = is_led(setup, run);
   if (law.kind == WHEEL_HELD && led) omega_z = 0;
@@ -147,6 +111,70 @@ bool decide(Wheel& w) {
   if (ends_here()) return false;  // under the law that was decided
   const WheelScene& scene = run.in_force.scene;
   return omega_z != spin || differ(law, scene.friction) || scene.ground != before.scene.ground;
+}
+
+}  // namespace
+
+int indicator_count() {
+  const auto is_exchanged = [](const EventRow& row) { return row.exchanged; };
+  return static_cast<int>(std::count_if(std::begin(event_rows), std::end(event_rows), is_exchanged));
+}
+
+int place_in_x(unsigned variable) {
+  const auto* found = std::find(std::begin(state_variables), std::end(state_variables), variable);
+  return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
+}
+
+int place_in_y(int in_x) { return states_of_y[in_x]; }
+
+void apply_at_once(Wheel& w) {
+  InForce& now = w.run.in_force;
+  const InForce before = now;
+  apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
+  w.demand.news = News::none;
+  if (now.road == before.road || w.run.phase == Phase::event_mode) return;
+  decide_law(w.setup, w.run.t, w.run.y, now);
+  log_changes(w, before);
+}
+
+void states(Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }
+
+void set_states(Wheel& w, const double* x) {
+  std::copy_n(x, state_count, w.run.x);
+  wheel_reduced_state(w.run.x, w.run.y);
+}
+
+void nominals(Wheel& w, double* x) {
+  double scales[max_states];
+  scales_at(w.setup, w.run.y[WHEEL_OMEGA_3], scales);
+  for (int i = 0; i < state_count; ++i) x[i] = scales[place_in_y(i)];
+}
+
+void derivatives(Wheel& w, double* x_dot) {
+  double x[state_count], y[max_states] = {};
+  std::copy_n(w.run.x, state_count, x);
+  keep_above_ground(x);
+  wheel_reduced_state(x, y);
+  ++w.run.counted.rhs;
+  rates_of_x(w.setup, w.run.in_force.scene, x, y, x_dot);
+}
+
+void indicators(Wheel& w, double* z) {
+  ++w.run.counted.roots;
+  for (const EventRow& row : event_rows)
+    if (row.exchanged) *z++ = indicator(row, w.setup, w.run);
+}
+
+bool has_event(Wheel& w) {
+  ++w.run.counted.roots;
+  return std::any_of(std::begin(event_rows), std::end(event_rows),
+                     [&](const EventRow& row) { return row.exchanged && indicator(row, w.setup, w.run) <= 0; });
+}
+
+bool decide(Wheel& w) {
+  const bool bends = decide_anew(w);
+  w.run.x[WHEEL_EULER_OMEGA_Z] = w.run.y[WHEEL_OMEGA_3];  // all that an event changes of the state
+  return bends;
 }
 
 bool starts_inside(const Wheel& w) {

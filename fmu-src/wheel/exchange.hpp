@@ -1,16 +1,18 @@
-// Model exchange. The caller's solver moves the states, those of wheel_euler; an input acts from the instant at which
-// it is set; the law of friction is decided anew at events only.
+// Model exchange. The caller's solver moves the states x (wheel_equations.h), from which y follows; an input acts from
+// the instant at which it is set; the law of friction is decided anew at events only.
 #pragma once
 
 #include "wheel.hpp"
 
 namespace wheel {
 
-inline constexpr int state_count = WHEEL_REDUCED_STATES;
+inline constexpr int state_count = WHEEL_EULER_STATES;
 // One for each event of the table that can occur in model exchange.
 int indicator_count();
-// (variable) => its place among the states, or -1
-int state_index_of(unsigned variable);
+// (variable) => its place in x, or -1
+int place_in_x(unsigned variable);
+// (place in x) => that of the state of y to which it belongs, and with it its scale
+int place_in_y(int in_x);
 
 // What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
 // for another law at once. Writes run.in_force, run.transitions and demand.news.
@@ -19,6 +21,7 @@ void apply_at_once(Wheel& wheel);
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins
 // are those of the flat wheel, which are finite. Rates, margins and events write run.counted.
 void states(Wheel& wheel, double* x);
+void set_states(Wheel& wheel, const double* x);
 void nominals(Wheel& wheel, double* x);
 void derivatives(Wheel& wheel, double* x_dot);
 void indicators(Wheel& wheel, double* z);

@@ -21,7 +21,7 @@ WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0));
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
   if (setup.friction_law == regularized_law) return regularized(setup);
-  const double omega_z = y[setup.formulation->spin_index];
+  const double omega_z = y[WHEEL_OMEGA_3];
   if (omega_z != 0) return rolling(omega_z > 0);
   const Hold hold = hold_at(setup, scene, y);
   return hold.reserve >= 0 ? held : released_from(hold);
@@ -31,7 +31,7 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
 // friction or brake.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
   const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
-  return some && setup.friction_law == exact_law && y[setup.formulation->spin_index] == 0;
+  return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }
 
 // (scene, y) => the slip as it would be without friction
@@ -70,8 +70,7 @@ void apply_loads(const Setup& setup, const Road& road, double t, const Polynomia
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
   const WheelFormulation& f = formulation_of(setup, scene);
   const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
-  const double* const across = y + f.spin_index - 2;  // the rates across the axle
-  if (psi_dot == 0 && theta_dot == 0 && across[0] == 0 && across[1] == 0) return;
+  if (psi_dot == 0 && theta_dot == 0 && y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0) return;
   WheelKinematics k;
   f.kinematics(&setup.scene.wheel, y, &k);
   const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
@@ -163,7 +162,7 @@ bool can_stiffen(const Setup& setup, const InForce& now) {
 }
 
 void enter_layer(const Setup& setup, const double* y, InForce& now) {
-  const double omega_z = y[setup.formulation->spin_index];
+  const double omega_z = y[WHEEL_OMEGA_3];
   now.layered = true;
   now.scene.friction = std::fabs(omega_z) > layer_edge(setup) ? rolling(omega_z > 0) : regularized(setup);
 }

@@ -60,7 +60,7 @@ void look_at_grip(Wheel& wheel, double t) {
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
   if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
-  double y[WHEEL_MAX_STATES];
+  double y[max_states];
   wheel.solver.read(t, y);
   const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
   const double mu = wheel_required_friction(dynamics.lambda);
@@ -86,16 +86,14 @@ void log_ending(Wheel& wheel, Event event) {
   const Setup& setup = wheel.setup;
   if (wheel.endings++ >= most_logged) return;
   constexpr double rounding = 1e-15;  // of the cosine of a right angle
-  if (event == Event::lies_flat && setup.tilting == 0 &&
-      std::fabs(std::cos(setup.start[setup.formulation->tilt_index])) < rounding)
+  if (event == Event::lies_flat && setup.tilting == 0 && std::fabs(std::cos(setup.start[WHEEL_THETA])) < rounding)
     wheel.reporter.log(Topic::warning,
                        "The wheel started exactly upright: unless a force tipped it, rounding decided when and to "
                        "which side; guided = true keeps it upright.");
   if (event == Event::lost_contact && run.in_force.scene_at(run.t).load.F[2] > 0)
     wheel.reporter.log(Topic::warning, "F_Z > 0 lifts the wheel; a load on it is a negative F_Z.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
-                     ending_of(run.in_force, event).text, wheel.time(),
-                     Digits{run.y[setup.formulation->tilt_index], 6});
+                     ending_of(run.in_force, event).text, wheel.time(), Digits{run.y[WHEEL_THETA], 6});
   if (wheel.endings == most_logged)
     wheel.reporter.log(Topic::discard, "%lld ends were logged; further ones are not logged until a reset.",
                        most_logged);

@@ -94,7 +94,7 @@ bool enter_orbit(Wheel& w) {
   const InForce& now = w.run.in_force;
   const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
   // a carrier that turned it at the start and not any more
-  const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + WHEEL_MAX_STATES, w.setup.start);
+  const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
@@ -147,7 +147,7 @@ double stop_of(const Wheel& w, double t) {
 bool is_about_to_jam(const Wheel& w) {
   constexpr double little_room = 1e-2;
   if (!w.run.in_force.slides()) return false;
-  double y[WHEEL_MAX_STATES];
+  double y[max_states];
   w.solver.read(w.solver.known_until(), y);
   return wheel_slip(&w.run.in_force.scene, y, y[WHEEL_CHI]).room < little_room;  // the same whatever acts
 }
@@ -160,8 +160,8 @@ bool is_about_to_jam(const Wheel& w) {
   InForce& now = w.run.in_force;
   if (now.layered) return Outcome::stepped;
   const solver::Step& step = w.solver.bare_step();
-  const double before = step.y_start[w.setup.formulation->spin_index], omega_s = w.setup.omega_s;
-  const double omega_z = step.y_end[w.setup.formulation->spin_index];
+  const double before = step.y_start[WHEEL_OMEGA_3], omega_s = w.setup.omega_s;
+  const double omega_z = step.y_end[WHEEL_OMEGA_3];
   if (!(std::fabs(omega_z - before) < still * omega_s)) return Outcome::stepped;
   const double part = std::tanh(omega_z / omega_s), decay = decay_of(w.setup, now.scene_at(step.end), step.y_end);
   if (!(decay * (1 - part * part) * (step.end - step.start) > limit)) return Outcome::stepped;
@@ -243,7 +243,7 @@ void end(Wheel& w) {
 // The state is that before the step, and stays so.
 void fail(Wheel& w, const Run& before) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
-  const double spin = state_now(w)[w.setup.formulation->spin_index];
+  const double spin = state_now(w)[WHEEL_OMEGA_3];
   const double slip = before.in_force.slides() ? before.y[WHEEL_SLIP] : 0;
   w.reporter.log(
       Topic::error,

@@ -47,15 +47,15 @@ template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int spin = setup.formulation->spin_index;
-  const double theta = y[setup.formulation->tilt_index];
+  const int spin = WHEEL_OMEGA_3;
+  const double theta = y[WHEEL_THETA];
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const bool multibody = setup.formulation == &wheel_multibody;
   const double slow = share * setup.tolerance;
   const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
   const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
-  double scales[WHEEL_MAX_STATES];
+  double scales[max_states];
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
@@ -87,7 +87,7 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const Rates backward = rates_of(setup, scene, y);
   const WheelFormulation& formulation = formulation_of(setup, scene);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
-  const double spin_change = change(setup.formulation->spin_index);
+  const double spin_change = change(WHEEL_OMEGA_3);
   for (int i = 0; i < formulation.states; ++i) others[i] = spin_change == 0 ? 0 : change(i) / spin_change;
   for (const double omega : omega_z) {
     const double part = std::tanh(omega / setup.omega_s);
@@ -107,14 +107,14 @@ solver::Problem problem_of(Wheel& wheel) {
   const InForce& now = wheel.run.in_force;
   solver::Problem problem = {};
   const bool few = formulation_of(setup, now.scene).states == WHEEL_REDUCED_STATES;
-  problem.states = few ? WHEEL_REDUCED_STATES : WHEEL_MAX_STATES;
+  problem.states = few ? WHEEL_REDUCED_STATES : max_states;
   problem.owner = &wheel;
-  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<WHEEL_MAX_STATES>;
-  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<WHEEL_MAX_STATES>;
+  problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
+  problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
   if (now.inputs.varies) problem.extremes = extremes;
   problem.near = 0.1;  // of the weight, or rad from lying flat
   problem.longest_step = setup.longest_step;
-  const int spin = setup.formulation->spin_index;
+  const int spin = WHEEL_OMEGA_3;
   if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
   if (now.in_layer()) {  // an eighth of it
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
@@ -133,7 +133,7 @@ Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
-  double state[WHEEL_MAX_STATES] = {};  // longer than that of the orbit, which no event moves
+  double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
   return pass(row, wheel.setup, t, state, wheel.run.in_force);
 }

@@ -97,10 +97,11 @@ struct Run {
   double y_time = 0;       // s, clock of the run: the instant of y
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
-  double y[WHEEL_MAX_STATES] = {};
-  bool observed[event_count] = {};  // has occurred, and was logged
-  long long transitions = 0;        // of the friction, rolling and sliding
-  solver::Counters counted = {};    // before the solver was last started from nothing
+  double y[max_states] = {};
+  double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
+  bool observed[event_count] = {};    // has occurred, and was logged
+  long long transitions = 0;          // of the friction, rolling and sliding
+  solver::Counters counted = {};      // before the solver was last started from nothing
 };
 
 // The counts of a run, those of the solver at work included.

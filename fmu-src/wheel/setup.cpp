@@ -38,17 +38,13 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
 // The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the initial tilting,
 // whichever is larger.
 void set_error_scales(Setup& setup) {
-  const WheelFormulation* const f = setup.formulation;
   const double length = setup.length, slowest = 1 / setup.time_scale;
   const double rate = std::max(slowest, setup.tilting);
+  setup.slip_scale = 0.15 * slowest * length;
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
-  const double reduced[] = {1, rate, rate, rate, 3, 3, 3 * length, 3 * length};
-  setup.slip_scale = 0.15 * slowest * length;
-  const double euler[] = {3 * length, 3 * length, 3, 1, 3, rate, rate, rate};
-  std::fill_n(setup.slow_scales, WHEEL_MAX_STATES, 1.0);  // also of states that rest while the wheel slides
-  std::copy_n(setup.exchanged ? euler : reduced, f->states, setup.slow_scales);
-  if (setup.sliding) setup.slow_scales[WHEEL_SLIP] = setup.slip_scale;
+  const double scales[max_states] = {1, rate, rate, rate, 3, 3, 3 * length, 3 * length, setup.slip_scale, 1, 1, 1};
+  std::copy_n(scales, max_states, setup.slow_scales);
 }
 
 bool check_value(const Reporter& reporter, unsigned v, double value) {
@@ -70,7 +66,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
 // Those of the kind of run and the formulation, rolling and sliding.
 void choose_equations(Setup& setup, const Demand& demand) {
   const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation;
-  setup.formulation = setup.exchanged ? &wheel_euler : multibody ? &wheel_multibody : &wheel_reduced;
+  setup.formulation = multibody ? &wheel_multibody : &wheel_reduced;
   if (demand.slides) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
@@ -115,7 +111,7 @@ void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, 
   const double axial = motion.psi_dot * std::cos(motion.theta), rounding = 4 * std::numeric_limits<double>::epsilon();
   formulation.start(&wheel, &motion, y);
   if (std::fabs(motion.phi_dot + axial) <= rounding * (std::fabs(motion.phi_dot) + std::fabs(motion.psi_dot)))
-    y[formulation.spin_index] = 0;
+    y[WHEEL_OMEGA_3] = 0;
 }
 
 Setup setup_of(const Demand& demand) {
@@ -154,14 +150,12 @@ Setup setup_of(const Demand& demand) {
 }
 
 void scales_at(const Setup& setup, double omega_z, double* out) {
-  const WheelFormulation& f = *setup.formulation;
-  std::copy_n(setup.slow_scales, setup.sliding ? WHEEL_MAX_STATES : f.states, out);
+  std::copy_n(setup.slow_scales, max_states, out);
   const double spin = std::fabs(omega_z), slowest = 1 / setup.time_scale;
   if (!(spin > slowest)) return;
   const double nutation = slowest * slowest / spin + setup.tilting;  // rad/s
-  out[f.tilt_index] = std::fmin(out[f.tilt_index], nutation / spin);
-  const int last = f.spin_index;  // the three rates of rotation stand together, the spin last
-  for (int i = last - 2; i <= last; ++i) out[i] = std::fmin(out[i], nutation);
+  out[WHEEL_THETA] = std::fmin(out[WHEEL_THETA], nutation / spin);
+  for (const int rate : {WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) out[rate] = std::fmin(out[rate], nutation);
 }
 
 double share_at(const Setup& setup, double omega_z) {

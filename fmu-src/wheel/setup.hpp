@@ -16,6 +16,10 @@ namespace wheel {
 // energy stays below it (docs/results/accuracy.md).
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
+// Room for a state y (wheel_equations.h), as wide as the solver's. A wheel that slides has ten states; the two behind
+// them rest, and count in the mean of an error.
+using solver::max_states;
+
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
@@ -60,17 +64,17 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
-  double tolerance;                // relative, of the whole solution
-  double start[WHEEL_MAX_STATES];  // the initial state
+  double tolerance;          // relative, of the whole solution
+  double start[max_states];  // the initial state
   Origin psi, phi, X_O, Y_O;
-  double tilting;                        // rad/s, initial rate of turning about e1 and e2
-  double time_scale;                     // s, of the wheel's motion
-  double longest_step;                   // s
-  double length;                         // m, r_0 + r
-  double weight;                         // N, or the force that the time scale stands for without a weight
-  double rate_scale, moment_scale;       // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
-  double slip_scale;                     // m/s, of the slip: error that counts as one, and of its margin
-  double slow_scales[WHEEL_MAX_STATES];  // error of each state that counts as one while the wheel spins slowly
+  double tilting;                   // rad/s, initial rate of turning about e1 and e2
+  double time_scale;                // s, of the wheel's motion
+  double longest_step;              // s
+  double length;                    // m, r_0 + r
+  double weight;                    // N, or the force that the time scale stands for without a weight
+  double rate_scale, moment_scale;  // rad/s, N m, of margins; powers of two, so that scaling rounds nothing
+  double slip_scale;                // m/s, of the slip: error that counts as one, and of its margin
+  double slow_scales[max_states];   // error of each state that counts as one while the wheel spins slowly
 
   bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
 };
@@ -87,7 +91,7 @@ inline const WheelFormulation& formulation_of(const Setup& setup, const WheelSce
 }
 
 struct Rates {
-  double N, y_dot[WHEEL_MAX_STATES];
+  double N, y_dot[max_states];
 };
 // (scene, y) => y_dot, N
 inline Rates rates_of(const Setup& setup, const WheelScene& scene, const double* y) {

@@ -82,7 +82,7 @@ struct Pass {
     return true;
   }
 
-  // (scale: of the variable) => exact; whether all are
+  // Marks the derivatives that are exact; true if all are. scale: of the variable.
   bool settle(double scale) {
     constexpr double relative = 1e-11;
     for (std::size_t i = 0; i < count; ++i)
@@ -156,12 +156,13 @@ void put_brake_in_use(const Wheel& w, Reading& now) {
   now.scene.friction = used.scene.friction;
 }
 
-// (state, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the load.
+// (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
+// load.
 double size_of(const Setup& setup, const WheelFriction& law, int state, double value) {
   if (state < 0) return std::fmax(setup.weight, std::fabs(value));
-  double scales[WHEEL_MAX_STATES];
+  double scales[max_states];
   scales_at(setup, 0, scales);
-  const bool is_tilt = state == setup.formulation->tilt_index, is_spin = state == setup.formulation->spin_index;
+  const bool is_tilt = state == WHEEL_THETA, is_spin = state == WHEEL_OMEGA_3;
   if (is_spin && law.kind == WHEEL_REGULARIZED) return std::fmin(scales[state], setup.omega_s);
   return is_tilt ? scales[state] * std::sin(value) : scales[state];
 }
@@ -173,16 +174,17 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
   Reading now(w);
   if (known == variable::M_brake) put_brake_in_use(w, now);
   keep_ground(now);
-  if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
-    for (const unsigned angle : {variable::psi, variable::phi})
-      now.y[state_index_of(angle)] = wheel_less_turns(now.y[state_index_of(angle)]);
-  const int state = setup.exchanged ? state_index_of(known) : -1;
-  double& place = state >= 0 ? now.y[state] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  const double size = size_of(setup, now.scene.friction, state, place);
+  for (const int angle :
+       {WHEEL_EULER_PSI, WHEEL_EULER_PHI})  // a small step must not vanish in the rounding of a large one
+    now.x[angle] = wheel_less_turns(now.x[angle]);
+  const int in_x = setup.exchanged ? place_in_x(known) : -1;
+  double& place = in_x >= 0 ? now.x[in_x] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
+  const double size = size_of(setup, now.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
   const WheelScene& before = has_begun(w.run.phase) ? w.run.in_force.scene : setup.scene;
   const bool begins = now.scene.contact == WHEEL_SLIDES && before.contact == WHEEL_GRIPS;
   const auto move_to = [&](double x) {
     place = x;
+    if (setup.exchanged) wheel_reduced_state(now.x, now.y);
     if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
     return true;
   };
@@ -217,8 +219,8 @@ void take_along_motion(Wheel& w, Pass& pass) {
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
     const double s = start.scene.ground == WHEEL_GROUND_PULLS ? 0 : start.scene.wheel.s;
-    const double omega_z = start.y[formulation.spin_index], steepness = std::cosh(omega_z / law.omega_s);
-    const double kappa_dot = rates.y_dot[formulation.spin_index] / law.omega_s / steepness / steepness;
+    const double omega_z = start.y[WHEEL_OMEGA_3], steepness = std::cosh(omega_z / law.omega_s);
+    const double kappa_dot = rates.y_dot[WHEEL_OMEGA_3] / law.omega_s / steepness / steepness;
     tau_rate = -kappa_dot * (s * rates.N + start.scene.load.brake);
     rate.M[2] += tau_rate;
     law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};

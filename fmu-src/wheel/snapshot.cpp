@@ -52,7 +52,7 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
-  archive.numbers(run.y, WHEEL_MAX_STATES);
+  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(run.y, max_states);
   for (int i = 0; i < event_count; ++i) {
     archive.count(now.below[i], 0, 1);
     archive.count(run.observed[i], 0, 1);
@@ -71,6 +71,7 @@ bool complete(const Demand& demand, Setup& setup, Run& run) {
   if (!check_values(demand, Reporter(), false)) return false;
   setup = setup_of(demand);
   run.y_time = run.t;
+  if (setup.exchanged) wheel_reduced_state(run.x, run.y);
   InForce& now = run.in_force;
   apply_loads(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;

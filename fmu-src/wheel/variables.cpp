@@ -140,6 +140,13 @@ constexpr Row rows[] = {
 
 static_assert(std::size(rows) == variable_count && std::size(readers) == variable_count - stored_count);
 
+constexpr bool is_in_its_place(const Row& row) {
+  const auto variable = static_cast<unsigned>(&row - rows);
+  return (row.role == Role::input) == (variable >= first_input && variable < stored_count);
+}
+static_assert(std::all_of(std::begin(rows), std::end(rows), is_in_its_place), "the inputs end the stored variables");
+static_assert(stored_count - first_input == inputs_count);
+
 }  // namespace
 
 const Row& row_of(unsigned variable) { return rows[variable]; }

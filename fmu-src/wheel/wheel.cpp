@@ -61,10 +61,11 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   w.demand.slides = w.demand.parameters[variable::mu_slide] > 0;
   if (!check_values(w.demand, reporter, true)) return false;
   w.setup = setup_of(w.demand);
-  std::copy_n(w.setup.start, WHEEL_MAX_STATES, run.y);
+  std::copy_n(w.setup.start, max_states, run.y);
   run.in_force.scene = w.setup.scene;
   if (w.setup.steered()) set_guide_rates(w.setup, w.demand, run.in_force.scene, true, run.y);
   apply(w.setup, w.demand, 0, run.y, run.in_force);
+  if (w.setup.exchanged) wheel_euler_states(run.y, w.demand.parameters[variable::psi_dot_start], run.x);
   w.demand.news = News::none;
   Reading start(w);
   if (check_start(w, start, reporter)) run.phase = Phase::initial;
@@ -78,7 +79,8 @@ InForce in_force_now(const Wheel& w, double* y) {
 }
 
 Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solver)), transitions(w.run.transitions) {
-  std::copy_n(state_now(w), WHEEL_MAX_STATES, y);
+  std::copy_n(state_now(w), max_states, y);
+  std::copy_n(w.run.x, WHEEL_EULER_STATES, x);
   // where nothing was set, without a copy of all that is in force; and a carrier still turns as in the last step
   const News news = w.demand.news;
   const bool goes_on = news == News::none || (news == News::stays && setup->steered());
@@ -104,7 +106,8 @@ void set_experiment(Wheel& w, double start_time, double stop_time, double tolera
 
 void set(Wheel& w, unsigned variable, double value, int order) {
   if (variable >= stored_count) {
-    w.run.y[state_index_of(variable)] = value;
+    w.run.x[place_in_x(variable)] = value;
+    wheel_reduced_state(w.run.x, w.run.y);
     return decide_law(w.setup, w.run.t, w.run.y, w.run.in_force);
   }
   if (w.run.phase == Phase::faulty || w.run.phase == Phase::initial) w.run.phase = Phase::initializing;

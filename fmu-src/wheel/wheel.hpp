@@ -22,14 +22,18 @@ struct Reading {
 
   const Setup* setup;
   WheelScene scene;
-  double y[WHEEL_MAX_STATES];
+  double y[max_states];
+  double x[WHEEL_EULER_STATES];  // model exchange: the states, from which y follows
   solver::Counters counters;
   long long transitions;
 
   // psi, phi, X_O and Y_O as the state counts them.
   const WheelKinematics& kinematics() {
-    if (!kinematics_) formulation_of(*setup, scene).kinematics(&scene.wheel, y, &kinematics_.emplace());
-    return *kinematics_;
+    if (kinematics_) return *kinematics_;
+    WheelKinematics& k = kinematics_.emplace();
+    setup->exchanged ? wheel_euler_kinematics(&scene.wheel, x, &k)
+                     : formulation_of(*setup, scene).kinematics(&scene.wheel, y, &k);
+    return k;
   }
   const WheelDynamics& dynamics() {
     if (!dynamics_) dynamics_ = dynamics_of(*setup, scene, y);

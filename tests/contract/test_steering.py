@@ -82,7 +82,6 @@ def test_derivatives_count_until_something_is_set_after_their_step(
         set_again = w.put(psi_dot_guide=w.get("psi_dot_guide")[0]).serialized()
         assert w.to(0.2).bits() == w.back(state).to(0.2).bits()  # the motion is the same
         assert w.back(set_again).get(*inertial) == held
-        w.back(state)
         w.back(state).give({"psi_dot_guide": (0.6, 2.0), "theta_dot_guide": (-0.25, 0.5)})
         within(absolute_error(w.get(*inertial), before), 1e-9, "the same where the slopes go on")
         w.to(0.2)

@@ -80,9 +80,11 @@ class Rows:
     def judged(self) -> Table:
         """lambda_dot and tau_dot by the complex step, along q_dot and the accelerations of the transcription."""
         load, change = self.scenes["load"], self.load_dot
-        q, spin = set_rolling(self.scenes["wheel"], self.motions), eq.start_each(eq.REDUCED, self.scenes, self.motions)[:, 3]
-        # A narrow law magnifies its last bit.
-        q[:, 11] = spin - self.motions["psi_dot"] * np.cos(self.motions["theta"])
+        q, spin = (
+            set_rolling(self.scenes["wheel"], self.motions),
+            eq.start_each(eq.REDUCED, self.scenes, self.motions)[:, 3],
+        )
+        q[:, 11] = spin - self.motions["psi_dot"] * np.cos(self.motions["theta"])  # a narrow law magnifies its last bit
         accelerations = solved(Paper(self.scenes["wheel"], q), self.scenes)[:, :6]
         moved = q + 1j * STEP * np.hstack([q[:, 6:], accelerations])
         loads = {part: load[part] + 1j * STEP * change[part] for part in ("F", "M", "brake")}

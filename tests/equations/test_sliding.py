@@ -85,11 +85,11 @@ def test_the_slip_changes_as_newton_and_euler_have_it(form, rows: Rows) -> None:
     """|u|' and |u| (chi' + psi_dot), over their size."""
     y = states(form, rows)
     y_dot, _ = eq.derivative_each(form, rows.scenes, y)
-    speed, psi_dot = y[:, form.slip_index], rows.motions["psi_dot"]
-    got = np.column_stack([y_dot[:, form.slip_index], speed * (y_dot[:, form.slip_index + 1] + psi_dot)])
+    speed, psi_dot = y[:, eq.SLIP], rows.motions["psi_dot"]
+    got = np.column_stack([y_dot[:, eq.SLIP], speed * (y_dot[:, eq.CHI] + psi_dot)])
     want = np.array([(push.grow, push.turn) for push in rows.pushes])
     within(relative(got[rows.judged], want[rows.judged]), 16384 * EPSILON, "rate of the slip, relative")
-    slow = np.column_stack([got[:, 0], speed * y_dot[:, form.slip_index + 1]])
+    slow = np.column_stack([got[:, 0], speed * y_dot[:, eq.CHI]])
     beyond(relative(slow[rows.judged], want[rows.judged]), 1e-2, "rate without the turning of the axes, relative")
 
 
@@ -97,7 +97,7 @@ def test_the_slip_changes_as_newton_and_euler_have_it(form, rows: Rows) -> None:
 def test_the_velocity_of_O_is_that_of_rolling_and_the_slip_on_top(form, rows: Rows) -> None:
     y = states(form, rows)
     fast, still = y.copy(), y.copy()
-    still[:, form.slip_index] = 0
+    still[:, eq.SLIP] = 0
     fast = eq.columns(eq.kinematics_each(form, rows.scenes, fast), "X_O_dot", "Y_O_dot", "Z_O_dot")
     still = eq.columns(eq.kinematics_each(form, rows.scenes, still), "X_O_dot", "Y_O_dot", "Z_O_dot")
     rolling = eq.kinematics_each(eq.REDUCED, rows.scenes, eq.start_each(eq.REDUCED, rows.scenes, rows.motions))

@@ -53,7 +53,7 @@ def defect(played):
 
 def bound_of(kind, pieces, cuts, share=1.0):
     """Of the difference that the cuts may make. A restart can turn a step of CVODE that is just accepted into one that
-    is just rejected: what restarts may add is not reduced with the share."""
+    is just rejected: the share does not reduce what restarts may add."""
     restarts = kind["method"] in (2, 3) and pieces is VARIED
     return share * BOUND + RESTART * len(cuts) * restarts
 

@@ -18,6 +18,7 @@ from .paths import ROOT, build_folder
 
 NO_LAW, FRICTIONLESS, ROLLING, HELD, REGULARIZED = range(5)
 LAWS = {"frictionless": FRICTIONLESS, "rolling": ROLLING, "held": HELD, "regularized": REGULARIZED}
+OMEGA_3, SLIP, CHI = 3, 8, 9  # places in a state y: of omega_z, |u|, chi
 HEADER = ROOT / "fmu-src" / "equations" / "wheel_equations.h"
 
 
@@ -58,10 +59,10 @@ BUILD = build_folder()
 if not (found := [*BUILD.glob("libwheel_equations.*")]):
     raise FileNotFoundError(f"{BUILD} holds no libwheel_equations: run ./scripts/build first.")
 LIBRARY = ctypes.CDLL(str(found[0]))
-FORMULATIONS = ("reduced", "euler", "multibody", "sliding", "multibody_sliding")
-REDUCED, EULER, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (
-    Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS
-)
+FORMULATIONS = ("reduced", "multibody", "sliding", "multibody_sliding")
+REDUCED, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS)
+for function in (LIBRARY.wheel_reduced_state, LIBRARY.wheel_euler_rates, LIBRARY.wheel_euler_kinematics):
+    function.restype = None
 for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
     function.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
