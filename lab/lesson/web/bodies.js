@@ -155,14 +155,14 @@ export class WheelModel {
     this.past =
         [ribbon(all, accent, 1, 3, 0.95), ...marks(phases.slides, '--slide', 4), ...marks(phases.sticks, '--stick', 5)];
     dispose(this.path);
-    this.whole = ribbon(all, accent, 0.5, 1, 0.3);
+    this.whole = ribbon(all, accent, 0.35, 1, 0.75);
     this.path.clear().add(this.whole, ...this.past);
   }
 
   /** The last point of the path at or before t. */
   point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
 
-  /** Pose, path and arrows at t. show: {path, axes, future, pictures: [name], units: {kind: number to a radius}}. */
+  /** Pose, path and arrows at t. show: {path, axes, future, pictures: [name], units: of unitsOf}. */
   update(t, show) {
     const {wheel: {table}, r_0, r} = this;
     const at = (name) => table.value(name, t);
@@ -186,14 +186,14 @@ export class WheelModel {
 
   /** An arrow of pictures.js with its name at its tip; its length is in units of its kind, a length its own. */
   showArrow({name, kind, place, vector, from = [0, 0, 0], after = [0, 0, 0], color, faint = false}, units) {
-    const scale = kind === 'length' ? 1 : (this.r_0 + this.r) / (units[kind] ?? Infinity);
+    const scale = kind === 'length' ? 1 : (this.r_0 + this.r) / (units[kind]?.number ?? Infinity);
     const [length, tail] = [vector, after].map((parts) => new THREE.Vector3(...parts).multiplyScalar(scale));
     const {group, arrow, label} = this.arrows.get(name) ?? this.makeNamedArrow(name, place, color, faint);
     group.visible = true;
     group.position.set(...from).add(tail);
     pointArrow(arrow, length);
     label.visible = arrow.visible && !faint;
-    label.position.copy(length).addScaledVector(length.clone().normalize(), 0.13 * this.r_0);
+    label.position.copy(length).addScaledVector(length.clone().normalize(), 0.06 * this.r_0 + label.userData.half);
     if (!faint) return;
     this.ring.visible = arrow.visible;
     this.ring.quaternion.setFromUnitVectors(

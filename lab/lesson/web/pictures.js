@@ -115,9 +115,9 @@ export const PICTURES = {
         const beside = (part) => [0, part * (wheel.r_0 + wheel.r), 0.02 * wheel.r_0];
         const own = {kind: 'speed', place: 'contact'};
         return [
-          {...own, name: 'v', vector: [...v, 0], from: beside(-0.45), color: '--v'},
-          {...own, name: 'R ω_z', vector: [...turn, 0], after: [...v, 0], from: beside(-0.75), color: '--turn'},
-          {...own, name: 'slip', vector: [...slip, 0], from: beside(0), color: '--slide'},
+          {...own, name: 'v', vector: [...v, 0], from: beside(-0.4), color: '--v'},
+          {...own, name: 'R ω_z', vector: [...turn, 0], after: [...v, 0], from: beside(-0.65), color: '--turn'},
+          {...own, name: 'slip', vector: [...slip, 0], from: beside(-0.9), color: '--slide'},
         ];
       }),
   slip: picture(
@@ -153,23 +153,29 @@ export function arrowsOf({table, parameters}, names, t) {
   return known.flatMap(({arrows}) => arrows(parameters, (name) => (table.has(name) ? table.value(name, t) : 0)));
 }
 
-/** {kind: what an arrow as long as the radius stands for}: one for all wheels and their whole motion. */
+/**
+ * {kind: {number: what an arrow as long as the radius stands for, colours: {name: of the arrow}}}: one for all wheels and
+ * their whole motion.
+ */
 export function unitsOf(wheels, names) {
   const found = {};
   for (const wheel of wheels) {
     const {start, end} = wheel.table;
     for (let i = 0; i <= SAMPLES; ++i) {
-      for (const {kind, vector} of arrowsOf(wheel, names, start + i / SAMPLES * (end - start))) {
+      for (const {kind, name, vector, color, faint} of arrowsOf(wheel, names, start + i / SAMPLES * (end - start))) {
         const size = Math.hypot(...vector);
-        if (kind in KINDS && size > 1e-12) (found[kind] ??= []).push(size);
+        if (!(kind in KINDS) || size <= 1e-12) continue;
+        const {sizes, colours} = (found[kind] ??= {sizes: [], colours: {}});
+        sizes.push(size);
+        if (!faint) colours[name] = color;
       }
     }
   }
-  const unit = (sizes) => {
+  const unit = ([kind, {sizes, colours}]) => {
     const square = sizes.reduce((sum, size) => sum + size ** 2, 0) / sizes.length;
-    return roundUp(Math.max(Math.sqrt(square) / USUAL, extent(sizes)[1] / LONGEST));
+    return [kind, {number: roundUp(Math.max(Math.sqrt(square) / USUAL, extent(sizes)[1] / LONGEST)), colours}];
   };
-  return Object.fromEntries(Object.entries(found).map(([kind, sizes]) => [kind, unit(sizes)]));
+  return Object.fromEntries(Object.entries(found).map(unit));
 }
 
 /** The rate at which a fast upright wheel nutates over its spin omega_z. */

@@ -70,18 +70,19 @@ export function makeRibbon(points, {width, height, layer, color, opacity}) {
 /** Shows a ribbon up to its row-th point. */
 export const showRibbon = (ribbon, row) => ribbon.geometry.setDrawRange(0, 6 * Math.max(0, row));
 
-/** A short text that always faces the reader, such as uphill or e_1 with its subscript; height in m. */
+/** A short text that always faces the reader, such as uphill or e_1 with its subscript; height, half its width in m. */
 export function makeLabel(text, colour, height) {
   const width = Math.max(128, 40 * text.length);
+  let length = 0;
   const map = makeTexture(width, 96, (pen) => {
     Object.assign(pen, {textBaseline: 'middle', fillStyle: colour});
-    const length = write(pen, text, 0, 48, 72, SERIF);
+    length = write(pen, text, 0, 48, 72, SERIF);
     pen.clearRect(0, 0, width, 96);
     write(pen, text, (width - length) / 2, 48, 72, SERIF);
   });
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, transparent: true}));
   label.scale.set((height * width) / 96, height, 1);
-  return Object.assign(label, {renderOrder: 5});
+  return Object.assign(label, {renderOrder: 5, userData: {half: height * length / 192}});
 }
 
 /** Frees what a group holds on the graphics card. */
