@@ -1,11 +1,12 @@
 // What the reader sets: sliders with a number beside them, the chooser of bodies, and buttons that act while they are
 // held. A run follows from the values chosen; ranges follow the wheel.
 import {$, DEGREES, live, make, makeButton, subscripted, variables} from '#dom';
+import {STEP} from '#fmu';
 import {criticalSpin} from '#pictures';
 import {roundUp} from '#table';
 
 const KINETIC = 0.85;  // kinetic over static friction coefficient
-const RAMP = 0.05;     // s, from one tenth of a brake's moment to the next
+const RAMP = 0.5;      // s, in which a brake's moment rises from step to step
 const UPRIGHT = Math.PI / 2;
 
 /** m g (r_0 + r) of a wheel over that of the paper's. */
@@ -48,7 +49,9 @@ export function planOf({lean, spin, s = 0, mu = 0, brake, steer = 0, body = 'tyr
   if (mu > 0) Object.assign(values, {mu_max: mu, mu_slide: KINETIC * mu});
   if (speed !== undefined) values.slip_x_start = speed - radius * spin;
   const later = [...changes];
-  for (let i = 1; brake > 0 && i <= 10; ++i) later.push({t: 0.5 + RAMP * (i - 1), name: 'M_brake', value: brake * i / 10});
+  const parts = Math.round(RAMP / STEP);
+  for (let i = 1; brake > 0 && i <= parts; ++i)
+    later.push({t: 0.5 + STEP * (i - 1), name: 'M_brake', value: brake * i / parts});
   if (steer) later.push({t: 1, name: 'psi_dot_guide', value: steer});
   if (fork || steer) values.guided = 1;
   return {values, changes: later, stop};

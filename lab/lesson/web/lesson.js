@@ -5,8 +5,9 @@ import {Link} from '#address';
 import {makeControls, planOf, setUpHeld} from '#controls';
 import {$, fixed, live, make, makeButton, makeChoice, say, variables} from '#dom';
 import {STEP} from '#fmu';
+import {phasesOf} from '#phases';
 import {nutation, perRadian} from '#pictures';
-import {FREE, stepsOf} from '#steps';
+import {FORK, FREE, stepsOf} from '#steps';
 import {extent, POSE, Table} from '#table';
 
 const SIGNALS = [
@@ -66,7 +67,10 @@ export class Lesson {
   get current() { return this.steps[this.step]; }
 
   /** The diagrams that are shown, by name. */
-  get diagrams() { return this.current.free ? FREE[this.picture].diagrams : this.current.diagrams; }
+  get diagrams() { return this.current.free ? this.free.diagrams : this.current.diagrams; }
+
+  /** Of free play; a wheel in a fork does not precess. */
+  get free() { return this.wheel.parameters.guided && this.picture === 'precession' ? FORK : FREE[this.picture]; }
 
   /** Another step, played from its beginning. */
   turn(step) {
@@ -95,7 +99,7 @@ export class Lesson {
     if (ask && !Object.keys(chosen).length) this.guess = {asks: true};
     page.player.end = this.plan.stop;
     page.dress();
-    this.text = this.current.text?.(...page.wheels);
+    this.text = this.tell(this.current);
     this.showControls = makeControls($('#controls'), controls, this);
     this.showPicture();
     if (this.guess) page.plots.keepSecret(true, !ask.fates);
@@ -106,7 +110,7 @@ export class Lesson {
   /** The arrows of the step, which a question hides. */
   showPicture() {
     const {page, current: {picture, free}, guess} = this;
-    const name = free ? this.picture : picture;
+    const name = free ? this.free.name ?? this.picture : picture;
     page.pictures = guess?.asks ? [] : name ? [name] : ['slip'];
     page.choose(page.choice);
   }
@@ -119,19 +123,31 @@ export class Lesson {
     if (beside) this.compute(page.wheels[1], planOf({...start, ...chosen, ...beside}));
   }
 
+  /** The text of a step, whose figures are those of its own start, from rows of a millisecond. */
+  tell({start, beside, text}) {
+    const motions = [start, ...(beside ? [{...start, ...beside}] : [])].map((one) => this.motion(planOf(one), STEP / 10));
+    return text(...motions.map((motion) => ({...motion, phases: phasesOf(motion.table, motion.friction)})));
+  }
+
   /** The motion of a plan, on the page. */
   compute(wheel, plan) {
+    const {table, ...more} = this.motion(plan);
+    this.page.exchange(Object.assign(wheel, more), table);
+  }
+
+  /** The motion of a plan: {table, ended, friction, parameters, perRadian}; interval: from row to row, if it is given. */
+  motion(plan, given) {
     const {values, changes} = plan;
     const names = Object.keys(variables).filter((name) => variables[name].causality === 'parameter');
     const parameters = Object.fromEntries(names.map((name) => [name, Number(values[name] ?? variables[name].start ?? 0)]));
     const run = (interval) => this.fmu.run({...plan, record: RECORD, interval});
-    let {table, ended} = run(STEP);
-    const interval = intervalOf(table, parameters);
-    if (interval < STEP) ({table, ended} = run(interval));
+    let {table, ended} = run(given ?? STEP);
+    const interval = given ?? intervalOf(table, parameters);
+    if (!given && interval < STEP) ({table, ended} = run(interval));
     const set = [...Object.entries(values), ...changes.map(({name, value}) => [name, value])];
     const friction = set.some(([name, value]) => HOLDING.includes(name) && value > 0);
     const bars = parameters.guided || parameters.J_x !== parameters.J_y ? null : perRadian(this.fmu, values);
-    this.page.exchange(Object.assign(wheel, {ended, friction, parameters, perRadian: bars}), table);
+    return {table, ended, friction, parameters, perRadian: bars};
   }
 
   /** Another value of a control: a motion from the start, which nothing was asked about. */

@@ -16,7 +16,6 @@ const leans = (wheel, angle) => wheel.table.time[leansOf(wheel).findIndex((one) 
 const at = ({table}, t) => (name) => table.value(name, t);
 const joules = (wheel, t) => at(wheel, t)('E').toFixed(1);
 const spin = (wheel, t = 0) => Math.abs(at(wheel, t)('omega_z'));
-const kinetic = ({parameters: {mu_slide}}) => Number(mu_slide.toPrecision(3));
 /** By how much a quantity changes while friction holds the wheel for the first time. */
 const whileHeld = ({table, phases: {sticks: [[begin, end]]}}, name) =>
     Math.abs(table.value(name, end) - table.value(name, begin));
@@ -27,6 +26,9 @@ export const FREE = {
   resistance: {label: 'resistance', diagrams: ['spin', 'hold']},
   sliding: {label: 'sliding', diagrams: ['speeds', 'circle']},
 };
+
+/** Of a wheel in a fork, in the place of precession: the moment of the fork. */
+export const FORK = {name: 'carrier', diagrams: ['path', 'carrier']};
 
 /**
  * A step: start: what is chosen at first, and what else belongs to its run (controls.js); beside: what differs for a
@@ -123,7 +125,7 @@ export function stepsOf() {
       },
     },
     {
-      title: 'Rolling resistance stops the spin',
+      title: 'Rolling resistance',
       start: {...PAPER, s: 0.03},
       controls: ['s', 'spin'],
       picture: 'resistance',
@@ -137,7 +139,7 @@ export function stepsOf() {
       attempt: 'Lower s: the band gets narrow, and the first stop comes later.',
     },
     {
-      title: 'Held, but nodding and turning',
+      title: 'Held, but turning',
       start: {...PAPER, s: 0.08, stop: 4},
       controls: ['s'],
       picture: 'resistance',
@@ -181,12 +183,12 @@ export function stepsOf() {
           force, until it touches the outer circle, μ<sub>max</sub> N, at ${begin.toFixed(2)} s. There the grip is lost:
           the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${(locked - begin).toFixed(2)} s
           later the wheel is locked: R ω<sub>z</sub> is zero, and the slip is v. It slides
-          ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${(kinetic(wheel) * g).toFixed(2)} m/s², however hard it is braked.`;
+          ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${(wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
       },
       attempt: 'Brake with 50 N m: the force stays within the outer circle, the wheel rolls on, and it stops sooner.',
     },
     {
-      title: 'Thrown with backspin',
+      title: 'Backspin',
       start: {lean: 0, spin: -10, speed: 2, mu: 0.35, stop: 4},
       controls: ['spin', 'mu'],
       picture: 'sliding',
@@ -199,7 +201,7 @@ export function stepsOf() {
         return `Thrown forward at v = ${v.toFixed(1)} m/s and spinning backward, R ω<sub>z</sub> = ${turn.toFixed(1)} m/s, the wheel
           touches the road with a slip of ${slip.toFixed(1)} m/s: the sum of both. The road's force acts against the slip,
           μ<sub>slide</sub> N on the inner circle; it brakes v and the backspin alike. At ${end.toFixed(2)} s their
-          sum is zero: the wheel rolls, and comes back at ${(-at(wheel, end)('v_x')).toFixed(2)} m/s.`;
+          sum is zero: the wheel rolls, and comes back at ${(-at(wheel, wheel.table.end)('v_x')).toFixed(2)} m/s.`;
       },
       attempt: 'Give it less backspin, −4 rad/s: it rolls while still moving forward.',
       ask: {
