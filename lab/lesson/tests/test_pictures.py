@@ -78,7 +78,7 @@ def test_the_axle_turns_towards_the_ghost(live):
     k = int(np.argmin(abs(rates[10:200] - rates[:400].mean()))) + 10  # where it turns as on the average
     t = column(live, "time")[k]
     shown = arrows(live, t, "precession")
-    tilt = -shown["ghost"][0][0] / shown["L"][0][2]  # of the ghost's axle about e2, in 0.3 s
+    tilt = shown["ghost"][0][0] / shown["L"][0][2]  # of the ghost's axle about e2, in 0.3 s
     assert tilt == pytest.approx(0.3 * rates[k] * np.sin(column(live, "theta")[k]), rel=0.1)
 
 
