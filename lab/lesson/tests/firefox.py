@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -84,9 +85,13 @@ def firefox(folder: Path) -> Iterator[Tab]:
     program = shutil.which("firefox-esr") or shutil.which("firefox")
     command = [program, "--headless", "--no-remote", "--profile", str(profile), "--remote-debugging-port=0"]
     alone = os.environ | {"HOME": str(folder), "MOZ_CRASHREPORTER_DISABLE": "1"}
-    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=alone) as process:
+    log = folder / "log.txt"
+    with log.open("w") as file, subprocess.Popen(command, stderr=file, stdout=file, env=alone) as process:
         try:
-            found = next(filter(None, (re.search(r"BiDi listening on (ws://\S+)", line) for line in process.stderr)))
+            end = time.monotonic() + PATIENCE
+            while not (found := re.search(r"BiDi listening on (ws://\S+)", log.read_text())):
+                assert process.poll() is None and time.monotonic() < end, log.read_text()
+                time.sleep(0.1)
             socket = websocket.create_connection(f"{found[1]}/session", timeout=PATIENCE, suppress_origin=True)
             yield Tab(socket)
             socket.close()

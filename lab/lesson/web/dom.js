@@ -57,9 +57,9 @@ export function write(pen, text, x, y, size, font = '$ system-ui, sans-serif') {
 
 /** Shows a text in an element, or hides the element; writes only what is new. */
 export function say(host, text) {
+  if (host.said === (text ?? '')) return;
+  host.said = text ?? '';
   host.hidden = !text;
-  if (host.said === text) return;
-  host.said = text;
   host.replaceChildren(...subscripted(text ?? ''));
 }
 
