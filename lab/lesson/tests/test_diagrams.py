@@ -72,7 +72,7 @@ def test_the_spin_of_a_wheel_without_any_has_no_more_digits_than_that_of_one_wit
 def test_the_critical_spin_is_a_line_where_it_is_seen_and_the_wheel_nearly_upright_and_its_name_stands_above(live):
     for lean, spin, seen in ((2, 2.5, True), (2, 9, False), (60, 2.5, False)):
         open_step(live, 8, {"spin": spin})
-        live.evaluate("(lean) => { page.lesson.chosen.lean = lean; page.lesson.run(); }", lean)
+        live.evaluate("(lean) => { page.lesson.chosen.lean = lean; page.lesson.run(); page.renew(); }", lean)
         names = [(y, base) for text, _, _, y, base in live.evaluate(WRITTEN) if text == "crit"]
         assert bool(names) is seen
         level = live.evaluate("(({y}) => y)({y: page.plots.all[1].y(2.6315)})")

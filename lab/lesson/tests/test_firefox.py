@@ -83,7 +83,7 @@ def test_a_push_changes_the_motion(tab):
     middle = {"type": "pointerMove", "x": round(x + width / 2), "y": round(y + height / 2)}
     press, release = ({"type": kind, "button": 0} for kind in ("pointerDown", "pointerUp"))
     tab.act("pointer", middle, press, {"type": "pause", "duration": 600}, release, pointerType="mouse")
-    tab.evaluate("page.player.pause(); page.lesson.frame()")
+    tab.evaluate("(page.player.pause(), page.lesson.frame())")
     changes = tab.evaluate("page.lesson.plan.changes.map(({name, value}) => [name, value])")
     assert changes == [["M_3", -6], ["M_3", 0]]
     assert tab.evaluate("page.wheels[0].table.columns.omega_z.at(-1)") != before and tab.faults == []
@@ -91,7 +91,7 @@ def test_a_push_changes_the_motion(tab):
 
 @pytest.mark.parametrize(("name", "file"), [("csv", "motion.csv"), ("png", "wheel_1.00s.png")])
 def test_values_and_picture_are_saved(tab, folder, name, file):
-    tab.evaluate("page.lesson.turn(2); page.player.pause(); page.player.seek(1); page.lesson.frame(); page.draw()")
+    tab.evaluate("(page.lesson.turn(2), page.player.pause(), page.player.seek(1), page.lesson.frame(), page.draw())")
     tab.evaluate(f"document.querySelector('#take [name={name}]').click()")
     path, end = folder / file, time.monotonic() + 60
     while not (path.exists() and path.stat().st_size) and time.monotonic() < end:

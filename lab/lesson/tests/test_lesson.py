@@ -150,6 +150,9 @@ def test_a_step_keeps_nothing_of_the_one_before(live):
             do(live, 0.5, M_3=-3)
             open_step(live, k)
             assert live.evaluate(state) == fresh[k]
+    open_step(live, FREE, {"body": "coin"})
+    open_step(live, 4)  # of two wheels, after one of another look
+    assert live.evaluate(state) == fresh[4]
     assert fresh[9][5] == [["The wheel", 1]] and fresh[3][2] == 0.25  # what there is to keep
 
 
@@ -168,7 +171,8 @@ def test_a_step_that_asks_shows_nothing_of_the_answer_until_it_plays(live, step)
       ranges && form !== 'circle' ? ranges[1] : null)"""
     before = live.evaluate(ranges)
     other = {"spin": -8} if step == 10 else {"lean": 30} if step == 4 else {"spin": 4}
-    live.evaluate("(other) => { page.lesson.chosen = {...page.lesson.chosen, ...other}; page.lesson.run(); }", other)
+    act = "(other) => { page.lesson.chosen = {...page.lesson.chosen, ...other}; page.lesson.run(); page.renew(); }"
+    live.evaluate(act, other)
     assert live.evaluate(ranges) == before or step in (4, 10)  # another answer, and the same axes
     live.evaluate(PLAY, 0.1)
     assert live.evaluate(hidden)[2:] == [True, False]

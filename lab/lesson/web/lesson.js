@@ -115,7 +115,7 @@ export class Lesson {
     page.choose(page.choice);
   }
 
-  /** Runs of the values chosen. */
+  /** Motions of the values chosen, which are not shown yet. */
   run() {
     const {current: {start, beside}, chosen, page} = this;
     this.plan = planOf({...start, ...chosen});
@@ -129,7 +129,7 @@ export class Lesson {
     return text(...motions.map((motion) => ({...motion, phases: phasesOf(motion.table, motion.friction)})));
   }
 
-  /** The motion of a plan, on the page. */
+  /** A wheel's motion by a plan. */
   compute(wheel, plan) {
     const {table, ...more} = this.motion(plan);
     this.page.exchange(Object.assign(wheel, more), table);
@@ -259,6 +259,7 @@ export class Lesson {
       if (this.wanted) {
         Object.assign(this, {wanted: false, trouble: null});
         this.pushed ? this.compute(this.wheel, this.plan) : this.run();
+        this.page.renew();
       }
     } catch (fault) {
       this.trouble = fault.message;  // the wheel's own sentence about a start that cannot be

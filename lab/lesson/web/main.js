@@ -91,14 +91,18 @@ class Page {
     this.choose(this.choice);
   }
 
-  /** Another motion of a wheel, whose look may have changed. */
+  /** Gives a wheel a motion, which is not shown yet. */
   exchange(wheel, table) {
     const {friction, parameters} = wheel;
     Object.assign(wheel, {table, phases: phasesOf(table, friction), trace: traceOf(table, parameters.r_0)});
-    const model = this.stage?.models.find((one) => one.wheel === wheel);
-    if (!model) return;  // nothing is shown yet
-    if (JSON.stringify(model.look) !== JSON.stringify(lookOf(parameters))) return this.dress();
-    model.drawPath();
+  }
+
+  /** Shows the motions that the wheels have now; a look may have changed with them. */
+  renew() {
+    const looks = (all) => JSON.stringify(all.map(({wheel: {name}, look}) => [name, look]));
+    const wanted = this.wheels.map((wheel) => ({wheel, look: lookOf(wheel.parameters)}));
+    if (looks(this.stage.models) !== looks(wanted)) return this.dress();
+    this.stage.models.forEach((model) => model.drawPath());
     this.choose(this.choice);
   }
 
