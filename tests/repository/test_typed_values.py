@@ -26,7 +26,6 @@ FAULTS = {
         "example car v=18,5",
         "example balance k_theta=2,5",
         "view motion.csv --r_0 0,3 --r 0,05",
-        "view motion.csv --box 1,5 1 1",
     ),
     "no number": (
         "is not a number",
@@ -58,7 +57,6 @@ FAULTS = {
         "example car slope=95deg",
         "view motion.csv --slope 95deg",
         "view motion.csv --r_0 -1 --r 0",
-        "view motion.csv --box 0 1 1",
     ),
     "a name that is not there": (
         "Do you mean ",

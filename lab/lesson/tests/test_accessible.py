@@ -147,7 +147,9 @@ PRINTED = """() => [...document.querySelectorAll('#stage, .plot canvas')].map((c
 def test_on_paper_pictures_keep_their_shape_the_legend_is_readable_and_controls_are_gone(live):
     open_step(live, 6)
     live.emulate_media(media="print", color_scheme="dark")
-    live.wait_for_function("getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === '#f7f8fa'")
+    live.wait_for_function(
+        "getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === '#f7f8fa'"
+    )
     assert live.evaluate(PRINTED) == pytest.approx([1, 1, 1], rel=0.02)
     ink, paper = rgb(live, "--soft"), rgb(live, "--paper")
     beyond(contrast(ink, paper), 4.5, "contrast of the legend on paper")

@@ -83,7 +83,7 @@ def test_every_button_has_a_tooltip_and_every_diagram_a_name(either):
     tooltips = either.eval_on_selector_all("button, summary, input[type=range], #toggles label", TOOLTIPS)
     assert len(tooltips) > 12 and [button for title, button in tooltips if not title] == []
     diagrams = either.eval_on_selector_all(".plot:not([hidden]) canvas", "all => all.map((x) => x.ariaLabel)")
-    assert len(set(diagrams)) == len(diagrams) > 2 and all(len(name) > 20 for name in diagrams)  # for screen readers
+    assert len(set(diagrams)) == len(diagrams) > 0 and all(len(name) > 20 for name in diagrams)  # for screen readers
 
 
 CONTROLS = "header > button, #toggles label, #live button, .push, #take button, #controls b"
@@ -94,7 +94,8 @@ def unnamed(controls: list[str], guide: str) -> list[str]:
     """Controls whose name does not begin with a phrase that the guide sets in italics or bold."""
     marked = re.findall(r"\*+([^*]+)\*+", " ".join(guide.lower().split()))
     names = (control.translate(ARROWS).strip().lower() for control in controls)
-    return [name for name in names if not any(name.startswith(phrase.strip(".")) for phrase in marked)]
+    known = [phrase.strip(".") for phrase in marked]
+    return [n for n in names if n not in known and not any(len(k) > 3 and n.startswith(k) for k in known)]
 
 
 def test_the_guide_names_every_control_of_both_pages(either):
@@ -185,4 +186,6 @@ def test_words_and_cards_hide_neither_contact_nor_controls(window, live_file, st
         boxes = [part.bounding_box() for part in parts if part.is_visible()]
         assert len(boxes) > 3 and all(box["y"] + box["height"] <= size[1] for box in boxes)
         page.add_style_tag(content="#story { font-size: 40px }")
-        assert page.evaluate("(({scrollHeight, clientHeight}) => scrollHeight > clientHeight)(document.querySelector('#live'))")
+        assert page.evaluate(
+            "(({scrollHeight, clientHeight}) => scrollHeight > clientHeight)(document.querySelector('#live'))"
+        )

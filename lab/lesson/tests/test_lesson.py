@@ -14,7 +14,9 @@ from .pages import change, column, do, numbers, open_step, parameters, seek, sta
 
 STEPS, FREE = 11, 11
 ASKING = (2, 4, 5, 10)
-PLAY = "(t) => { page.player.play(); page.lesson.frame(); page.player.pause(); page.player.seek(t); page.lesson.frame(); }"
+PLAY = (
+    "(t) => { page.player.play(); page.lesson.frame(); page.player.pause(); page.player.seek(t); page.lesson.frame(); }"
+)
 
 
 def lean(page, wheel: int = 0) -> np.ndarray:
@@ -70,7 +72,9 @@ def test_friction_stops_the_spin_and_holds_it(live):
 def test_a_held_wheel_nods_and_turns_and_loses_no_energy(live, simulate):
     lasted, turned = numbers(open_step(live, 7).split("first time")[1])[:2]
     start_values = live.evaluate("page.lesson.plan.values")
-    rows = simulate(start_values=start_values, stop_time=4, output_interval=1e-3, output=["omega_z", "psi", "E", "theta"])
+    rows = simulate(
+        start_values=start_values, stop_time=4, output_interval=1e-3, output=["omega_z", "psi", "E", "theta"]
+    )
     held = np.flatnonzero(rows["omega_z"] == 0)
     first = held[: np.argmax(np.diff(held) > 1) + 1]
     assert 1e-3 * len(first) == pytest.approx(lasted, abs=6e-3)
@@ -131,7 +135,9 @@ def test_every_step_has_one_or_two_diagrams_and_one_to_three_controls_and_free_p
         shown = live.locator("#controls .knob:visible").count() + live.locator("#push:visible").count()
         assert 1 <= shown <= 3, k
     open_step(live, FREE)
-    controls = live.locator("#controls .knob:visible").evaluate_all("all => all.map((x) => x.innerText.split(/\\s/)[0])")
+    controls = live.locator("#controls .knob:visible").evaluate_all(
+        "all => all.map((x) => x.innerText.split(/\\s/)[0])"
+    )
     assert controls == ["body", "lean", "spin", "resistance", "grip", "steer"]
     assert live.locator(".push:visible").all_inner_texts() == ["◀ push back", "brake", "push forward ▶"]
 
@@ -213,7 +219,9 @@ def sketch(page) -> np.ndarray:
 
 def places(page, points) -> np.ndarray:
     """Time and lean of places of the canvas."""
-    (low, high), (width, height), end = page.evaluate("(({ranges, sizes, player}) => [ranges[1], sizes, player.end])(page.plots.tilt)")
+    (low, high), (width, height), end = page.evaluate(
+        "(({ranges, sizes, player}) => [ranges[1], sizes, player.end])(page.plots.tilt)"
+    )
     return np.array([[end * (x - 48) / width, low + (1 - (y - 10) / height) * (high - low)] for x, y in points])
 
 
@@ -232,7 +240,13 @@ def test_a_drawn_curve_bends_as_it_was_drawn_and_is_compared_with_the_true_one(l
         live.mouse.up()
     else:
         for k, (x, y) in enumerate(BEND):
-            at = {"pointerType": "touch", "pointerId": 1, "buttons": 1, "clientX": box["x"] + x, "clientY": box["y"] + y}
+            at = {
+                "pointerType": "touch",
+                "pointerId": 1,
+                "buttons": 1,
+                "clientX": box["x"] + x,
+                "clientY": box["y"] + y,
+            }
             canvas.evaluate("(x) => { x.setPointerCapture = () => {}; }")
             canvas.dispatch_event("pointermove" if k else "pointerdown", at)
         canvas.evaluate("(x) => delete x.setPointerCapture")
@@ -305,7 +319,14 @@ def test_a_body_has_the_moments_of_its_kind_and_ranges_that_fit_it(live, body):
         }[body]
     assert {name: wheel[name] for name in known} == pytest.approx(known, rel=0.05)
     high = float(live.locator("#slider_spin").get_attribute("max"))
-    limit = np.sqrt(wheel["m"] * 9.81 * wheel["r_0"] * wheel["J_x"] / wheel["J_z"] / (wheel["J_z"] + wheel["m"] * (wheel["r_0"] + wheel["r"]) ** 2))
+    limit = np.sqrt(
+        wheel["m"]
+        * 9.81
+        * wheel["r_0"]
+        * wheel["J_x"]
+        / wheel["J_z"]
+        / (wheel["J_z"] + wheel["m"] * (wheel["r_0"] + wheel["r"]) ** 2)
+    )
     assert 3 * limit < high < 12 * limit
     assert live.evaluate("page.stage.models[0].look.kind") == {"tyre": "wheel"}.get(body, body)
 
@@ -351,7 +372,9 @@ def test_a_push_lasts_as_long_as_its_key_is_held_and_leaves_the_past_alone(live)
     live.wait_for_function("page.player.t > 1.1")
     live.keyboard.up(" ")
     live.evaluate("page.player.pause(); page.lesson.frame()")
-    (begin, *pushed), (end, *released) = live.evaluate("page.lesson.plan.changes.map(({t, name, value}) => [t, name, value])")
+    (begin, *pushed), (end, *released) = live.evaluate(
+        "page.lesson.plan.changes.map(({t, name, value}) => [t, name, value])"
+    )
     assert (pushed, released) == (["M_3", 6], ["M_3", 0]) and end > begin == pytest.approx(1.0)
     same = before == column(live, "theta")
     assert same[:101].all() and not same[200:].any()
@@ -359,7 +382,7 @@ def test_a_push_lasts_as_long_as_its_key_is_held_and_leaves_the_past_alone(live)
 
 @pytest.mark.parametrize("spin", [2.0, -3.0])
 def test_a_push_accelerates_the_wheel_along_e1_or_against_it(live, spin):
-    """By the torque over the inertia about the contact; a wheel that rolls backward is slowed down by a push forward."""
+    """By the torque over the inertia about the contact; forward slows down a wheel that rolls back."""
     for way, sign in (("forward", 1), ("back", -1)):
         start(live, at=1, lean=0, spin=spin)
         button = live.locator(".push", has_text=way)

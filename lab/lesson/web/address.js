@@ -89,7 +89,8 @@ export class Link {
     this.at = now;
     const text = this.write();
     // An address that has come and is not followed yet stays, and a wrong one until the reader does something.
-    if (text === this.text || this.text !== location.hash.slice(1) || (this.lesson.refusal && text === 'step=1')) return;
+    if (text === this.text || this.text !== location.hash.slice(1) || (this.lesson.refusal && text === 'step=1'))
+      return;
     this.put(text);
   }
 }

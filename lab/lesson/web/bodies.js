@@ -10,8 +10,8 @@ import {THREE} from 'three';
 const metal = (color, specular, shininess) => ({color, specular, shininess});
 const [METAL, FACE] = [metal('#9aa2ac', '#6a7078', 40), metal('#8d949f', '#8a9098', 60)];
 const GOLD = metal('#c2a04e', '#8d7a45', 60);
-const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
-const COIN = 0.05;  // m, up to which a disc is a coin
+const UPRIGHT = [Math.PI / 2, 0, 0];  // a cylinder's axis along z
+const COIN = 0.05;                    // m, up to which a disc is a coin
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */

@@ -80,7 +80,7 @@ export function setUpSwitches(stage, changed) {
 }
 
 const PRESSED = 'button, select, input[type=checkbox], input[type=radio]';  // by the space bar
-const MOVED = 'input, select, canvas';                                      // by arrow keys; of the canvas, the scene turns
+const MOVED = 'input, select, canvas';  // by arrow keys; of the canvas, the scene turns
 
 /** The page's keys: those here, and for the rest the button that has the key as its shortcut. Fields keep their own. */
 export function setUpKeys({player, stage, plots}) {

@@ -19,14 +19,20 @@ const control = (symbol, unit, what, range, limits) => ({symbol, unit, what, ran
 export const CONTROLS = {
   body: {what: 'body'},
   lean: control('90° − θ', '°', 'lean', () => [0.5, 75, 0.5], [0, 85]),
-  spin: control('−ω_z', 'rad/s', 'spin', (wheel) => {
-    const high = roundUp(4.5 * criticalSpin(wheel));
-    return [-high, high, high / 400];
-  }, [-1000, 1000]),
-  s: control('s', 'm', 'resistance', ({r_0, r}) => {
-    const high = roundUp(0.2 * (r_0 + r));
-    return [0, high, high / 200];
-  }, [0, 100]),
+  spin: control(
+      '−ω_z', 'rad/s', 'spin',
+      (wheel) => {
+        const high = roundUp(4.5 * criticalSpin(wheel));
+        return [-high, high, high / 400];
+      },
+      [-1000, 1000]),
+  s: control(
+      's', 'm', 'resistance',
+      ({r_0, r}) => {
+        const high = roundUp(0.2 * (r_0 + r));
+        return [0, high, high / 200];
+      },
+      [0, 100]),
   mu: control('μ_max', '', 'grip', () => [0, 1, 0.01], [0, 10]),
   brake: control('M_b', 'N m', 'brake', () => [0, 200, 1], [0, 1e4]),
   steer: control('', 'rad/s', 'steer', () => [-1, 1, 0.02], [-10, 10]),
@@ -40,7 +46,8 @@ export const limitsOf = (name) => CONTROLS[name].limits;
  * mu (static; 0: not limited), brake (N m, on a wheel in a fork, rising from 0.5 s on), steer (rad/s, in a fork, from
  * 1 s on), body; and of a step: speed, m/s, of a thrown wheel, changes, stop, fork.
  */
-export function planOf({lean, spin, s = 0, mu = 0, brake, steer = 0, body = 'tyre', speed, fork, changes = [], stop = 10}) {
+export function planOf(
+    {lean, spin, s = 0, mu = 0, brake, steer = 0, body = 'tyre', speed, fork, changes = [], stop = 10}) {
   const {parameters} = live.bodies[body];
   const radius = parameters.r_0 + parameters.r;
   const theta = UPRIGHT - lean / DEGREES;

@@ -1,5 +1,6 @@
 // What the diagrams show, by name: curves over time, and planes: the tilt's rate over the tilt, and the path of the
-// contact point from above. The friction circle and the bars of an upright wheel have classes of their own (diagrams.js).
+// contact point from above. The friction circle and the bars of an upright wheel have classes of their own
+// (diagrams.js).
 import {DEGREES} from '#dom';
 import {criticalSpin, resistance} from '#pictures';
 import {contactOf, extent} from '#table';
@@ -12,8 +13,16 @@ const HOLD = ['tau', 'omega_z_dot', 'theta', 'lambda_3', 's', 'M_brake'];
  * A curve over time: the columns it needs, and its values from theirs and the wheel, of which the second is dashed.
  * band: the second is the limit of a band about zero; whole: the axis while the future is a secret.
  */
-const curve = (title, unit, digits, columns, what, values, more) =>
-    ({form: 'time', title, unit, digits, columns, what: `${what} over time. Click or drag to go there`, values, ...more});
+const curve = (title, unit, digits, columns, what, values, more) => ({
+  form: 'time',
+  title,
+  unit,
+  digits,
+  columns,
+  what: `${what} over time. Click or drag to go there`,
+  values,
+  ...more
+});
 
 const guided = ({parameters}) => Boolean(parameters.guided);
 /** Whether a wheel is upright until its first slide ends. */
@@ -30,7 +39,8 @@ export const CURVES = {
   lean: curve(
       'lean 90° − θ', '°', 1, ['theta'], 'Lean: angle of the wheel to the vertical, 90° where it lies flat,',
       ([theta]) => [90 - DEGREES * theta], {fits: (wheel) => moves(wheel, 'theta'), whole: [0, 90]}),
-  spin: curve('spin −ω_z', 'rad/s', 3, ['omega_z'], 'Spin: angular velocity about the axle, positive where it rolls forward,',
+  spin: curve(
+      'spin −ω_z', 'rad/s', 3, ['omega_z'], 'Spin: angular velocity about the axle, positive where it rolls forward,',
       ([omega]) => [-omega], {
         fits: (wheel) => !brakes(wheel),
         level: ({parameters, table}) => {
@@ -45,15 +55,16 @@ export const CURVES = {
           [X_dot * Math.cos(psi) + Y_dot * Math.sin(psi),
            r * Math.cos(theta) * psi_dot * Math.sin(theta) - (r_0 + r * Math.sin(theta)) * omega_z],
       {fits: brakes}),
-  load: curve('wheel load N', 'N', 0, ['lambda_3'], 'Wheel load', ([N]) => [N], {fits: (wheel) => moves(wheel, 'lambda_3')}),
+  load: curve(
+      'wheel load N', 'N', 0, ['lambda_3'], 'Wheel load', ([N]) => [N], {fits: (wheel) => moves(wheel, 'lambda_3')}),
   carrier: curve(
       'M_guide e_1, dashed e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
       'Moment of the wheel carrier on the wheel along e1, and dashed along e2,', (both) => both,
       {fits: (wheel) => moves(wheel, 'M_guide_1') || moves(wheel, 'M_guide_2')}),
   energy: curve('energy E', 'J', 2, ['E'], 'Total energy', ([E]) => [E]),
   hold: curve(
-      'moment that would hold the spin', 'N m', 1,
-      HOLD, 'Moment about the axle that would hold the spin, and as a band what rolling resistance has, from −s N to s N,',
+      'moment that would hold the spin', 'N m', 1, HOLD,
+      'Moment about the axle that would hold the spin, and as a band what rolling resistance has, from −s N to s N,',
       (values, {parameters}) => {
         const {hold, most} = resistance(parameters, (name) => values[HOLD.indexOf(name)]);
         return [hold, most];
@@ -67,8 +78,9 @@ const plane = (title, units, columns, what, point, more) =>
 
 export const PLANES = {
   path: plane(
-      'path from above', ['m', 'm'], ['X_O', 'Y_O', 'psi', 'theta'], 'Path of the contact point on the ground, from above',
-      (values, {parameters: {r_0}}) => contactOf(r_0, ...values), {even: true}),
+      'path from above', ['m', 'm'], ['X_O', 'Y_O', 'psi', 'theta'],
+      'Path of the contact point on the ground, from above', (values, {parameters: {r_0}}) => contactOf(r_0, ...values),
+      {even: true}),
   phase: plane(
       'rate of θ over θ', ['°', '°/s'], ['theta', 'theta_dot'],
       'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
@@ -90,7 +102,12 @@ export const BARS = {
   what: 'Moments per radian of lean of the wheel that rolls upright: one that tips it, and one that rights it',
   fits: ({perRadian}) => Boolean(perRadian),
 };
-export const KINDS = {...CURVES, ...PLANES, circle: CIRCLE, bars: BARS};
+export const KINDS = {
+  ...CURVES,
+  ...PLANES,
+  circle: CIRCLE,
+  bars: BARS
+};
 
 /** Whether a kind has something to show of a wheel. */
 export const fits = (kind, wheel) =>

@@ -81,7 +81,8 @@ class Diagram {
     for (const tick of this.kind.form === 'time' ? [] : across.ticks)
       pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
     Object.assign(pen, {font: FONT, fillStyle: colour('--soft'), textAlign: 'right', textBaseline: 'middle'});
-    for (const tick of up.ticks) pen.fillText(fixed(tick, up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
+    for (const tick of up.ticks)
+      pen.fillText(fixed(tick, up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const text = fixed(tick, across.digits) + (unit && tick === across.ticks.at(-1) ? ` ${unit}` : '');
@@ -184,8 +185,7 @@ class Curve extends Diagram {
       pen.globalAlpha = 1;
       for (const side of [2, -2]) this.line(pen, part(side), 1, held);
       const sticks = width === PAST ? phases.sticks : [];
-      for (const [begin, end] of sticks)
-        this.line(pen, part(1).filter(([t]) => t >= begin && t <= end), 7, held);
+      for (const [begin, end] of sticks) this.line(pen, part(1).filter(([t]) => t >= begin && t <= end), 7, held);
     }
     this.line(pen, part(1), width, own);
     if (!kind.band && points[0].length > 2) this.line(pen, part(2), width, own, DASHES);
@@ -202,7 +202,8 @@ class Curve extends Diagram {
   /** A level of each wheel that has one, with both signs, where they are seen: dashed, its name above the line. */
   drawLevels(pen) {
     const values = this.wheels.map((wheel) => this.kind.level?.(wheel)).filter(Number.isFinite);
-    const seen = [...new Set(values)].flatMap((value) => [-value, value])
+    const seen = [...new Set(values)]
+                     .flatMap((value) => [-value, value])
                      .filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1]);
     for (const value of this.secret ? [] : seen) {
       this.line(pen, [[this.ranges[0][0], value], [this.ranges[0][1], value]], 1, colour('--soft'), DASHES);
@@ -425,7 +426,8 @@ class Bars extends Diagram {
       const end = write(pen, text, LEFT + 3, y + 0.24 * pitch, 12);
       write(pen, `${this.number(perRadian[name])} N m`, end + 10, y + 0.24 * pitch, 12);
     });
-    this.values.replaceChildren(...wheels.map(({perRadian: {tips, rights}}) => make('span', {}, this.verdict(tips, rights))));
+    this.values.replaceChildren(
+        ...wheels.map(({perRadian: {tips, rights}}) => make('span', {}, this.verdict(tips, rights))));
   }
 
   number(value) { return Number(value.toPrecision(3)).toString(); }
@@ -436,7 +438,12 @@ class Bars extends Diagram {
   }
 }
 
-const FORMS = {time: Curve, plane: Plane, circle: Circle, bars: Bars};
+const FORMS = {
+  time: Curve,
+  plane: Plane,
+  circle: Circle,
+  bars: Bars
+};
 
 export class Plots {
   constructor(host, player) {
@@ -454,7 +461,8 @@ export class Plots {
       this.all = names.map((name) => new FORMS[KINDS[name].form](this.host, this.player, KINDS[name]));
       this.choosePlane(names);
     }
-    for (const one of this.all) one.wheels = wheels.filter((wheel) => one.kind.columns.every((name) => wheel.table.has(name)));
+    for (const one of this.all)
+      one.wheels = wheels.filter((wheel) => one.kind.columns.every((name) => wheel.table.has(name)));
     this.prepare();
   }
 

@@ -36,14 +36,16 @@ const MARKS = [['sticks', '--stick', 'held: ω_z = 0'], ['slides', '--slide', 's
 /** Below the scene: how long an arrow as long as the radius is, by kind, and the marks of path and time that occur. */
 export function showLegend(host, wheels, units) {
   const arrows = Object.entries(units).map(([kind, {number, colours}]) => {
-    const names = Object.entries(colours).map(
-        ([name, own]) => make('b', {style: `color:var(${own})`}, ...subscripted(name)));
+    const names =
+        Object.entries(colours).map(([name, own]) => make('b', {style: `color:var(${own})`}, ...subscripted(name)));
     return make('span', {}, ...names.flatMap((name, i) => [i ? ', ' : '', name]), ` ${number} ${KINDS[kind]}`);
   });
   const key = arrows.length ? [make('span', {}, 'An arrow as long as the radius:'), ...arrows] : [];
   const found = MARKS.filter(([name]) => wheels.some(({phases}) => phases[name].length));
-  host.replaceChildren(...key, ...found.map(
-      ([, name, text]) => make('span', {}, make('i', {style: `background:var(${name})`}), ...subscripted(text))));
+  host.replaceChildren(
+      ...key,
+      ...found.map(
+          ([, name, text]) => make('span', {}, make('i', {style: `background:var(${name})`}), ...subscripted(text))));
 }
 
 /** Writes beside each wheel's name how it moves at t. */

@@ -11,8 +11,9 @@ import {FORK, FREE, stepsOf} from '#steps';
 import {extent, POSE, Table} from '#table';
 
 const SIGNALS = [
-  'omega_z', 'omega_z_dot', 'lambda_1', 'lambda_2', 'lambda_3', 'lambda_x', 'lambda_y', 'E', 'friction_mode', 'n_events',
-  'slip_x', 'slip_y', 'v_x', 'v_y', 'tau', 'tau_brake', 's', 'M_brake', 'M_guide_1', 'M_guide_2'
+  'omega_z', 'omega_z_dot',   'lambda_1', 'lambda_2', 'lambda_3',  'lambda_x', 'lambda_y',
+  'E',       'friction_mode', 'n_events', 'slip_x',   'slip_y',    'v_x',      'v_y',
+  'tau',     'tau_brake',     's',        'M_brake',  'M_guide_1', 'M_guide_2'
 ];
 const RECORD = [...POSE, ...POSE.map((name) => `${name}_dot`), ...SIGNALS];
 const HOLDING = ['s', 'M_brake'];  // may hold the wheel at omega_z = 0
@@ -50,7 +51,8 @@ export class Lesson {
     const list = $('#steps');
     list.append(...this.steps.map(({title}, i) => make('option', {value: i}, `${i + 1} ${title}`)));
     list.onchange = () => this.turn(Number(list.value));
-    [$('#live [name=back]').onclick, $('#live [name=next]').onclick] = [-1, 1].map((by) => () => this.turn(this.step + by));
+    [$('#live [name=back]').onclick, $('#live [name=next]').onclick] =
+        [-1, 1].map((by) => () => this.turn(this.step + by));
     $('#again').onclick = () => this.turn(this.step);
     const kinds = Object.entries(FREE).map(([name, {label}]) => ({name, label, title: `Show the picture of ${label}`}));
     this.markPicture = makeChoice($('#pictures'), kinds, (name) => {
@@ -69,7 +71,7 @@ export class Lesson {
   /** The diagrams that are shown, by name. */
   get diagrams() { return this.current.free ? this.free.diagrams : this.current.diagrams; }
 
-  /** Of free play; a wheel in a fork does not precess. */
+  /** Of free play; a wheel in a fork shows its moment. */
   get free() { return this.wheel.parameters.guided && this.picture === 'precession' ? FORK : FREE[this.picture]; }
 
   /** Another step, played from its beginning. */
@@ -125,7 +127,8 @@ export class Lesson {
 
   /** The text of a step, whose figures are those of its own start, from rows of a millisecond. */
   tell({start, beside, text}) {
-    const motions = [start, ...(beside ? [{...start, ...beside}] : [])].map((one) => this.motion(planOf(one), STEP / 10));
+    const motions =
+        [start, ...(beside ? [{...start, ...beside}] : [])].map((one) => this.motion(planOf(one), STEP / 10));
     return text(...motions.map((motion) => ({...motion, phases: phasesOf(motion.table, motion.friction)})));
   }
 
@@ -135,11 +138,14 @@ export class Lesson {
     this.page.exchange(Object.assign(wheel, more), table);
   }
 
-  /** The motion of a plan: {table, ended, friction, parameters, perRadian}; interval: from row to row, if it is given. */
+  /**
+   * The motion of a plan: {table, ended, friction, parameters, perRadian}; interval: from row to row, if it is given.
+   */
   motion(plan, given) {
     const {values, changes} = plan;
     const names = Object.keys(variables).filter((name) => variables[name].causality === 'parameter');
-    const parameters = Object.fromEntries(names.map((name) => [name, Number(values[name] ?? variables[name].start ?? 0)]));
+    const parameters =
+        Object.fromEntries(names.map((name) => [name, Number(values[name] ?? variables[name].start ?? 0)]));
     const run = (interval) => this.fmu.run({...plan, record: RECORD, interval});
     let {table, ended} = run(given ?? STEP);
     const interval = given ?? intervalOf(table, parameters);
@@ -241,7 +247,8 @@ export class Lesson {
     $('#story .try').innerHTML = `<b>Try</b> ${attempt}`;
     $('#story .try').hidden = Boolean(asked);
     const fates = guess?.asks ? ask.fates ?? [] : [];
-    const button = (textContent, k) => makeButton({textContent, title: 'Your guess; then it plays'}, () => this.pick(k));
+    const button = (textContent, k) =>
+        makeButton({textContent, title: 'Your guess; then it plays'}, () => this.pick(k));
     $('#story .guess').replaceChildren(...fates.map(button));
     say($('#story .verdict'), guess?.told ? this.verdict() : '');
     $('#controls').hidden = Boolean(asked);

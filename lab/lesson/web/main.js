@@ -76,8 +76,8 @@ class Page {
   /** The buttons for what one can look at. sources: how many files or runs the wheels come from. */
   offer(sources) {
     this.choices = choicesOf(this.wheels, sources);
-    const options = this.choices.map(
-        ({label}, name) => ({name, label, title: `Show: ${label} (key ${name + 1})`, key: name + 1}));
+    const options =
+        this.choices.map(({label}, name) => ({name, label, title: `Show: ${label} (key ${name + 1})`, key: name + 1}));
     $('#choice').hidden = options.length < 2;
     this.markChoice = makeChoice($('#choice'), options, (i) => this.choose(i));
   }

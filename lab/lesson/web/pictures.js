@@ -1,13 +1,13 @@
-// What a student cannot see and the FMU has: momentum and moment of a wheel that precesses, the wheel load that rolling
+// What a student cannot see and the FMU has: momentum and moment of precession, the wheel load that rolling
 // resistance moves forward, the velocities at the contact, the force of the ground and the moment of a wheel carrier.
 // Each is a number read off the outputs of the FMU, and an arrow of the scene. SI; carrier axes e1, e2, e3, or forward
 // (along e1), left and up.
 import {extent, roundUp} from '#table';
 
-export const GHOST = 0.3;      // s: how far ahead the turned axle is drawn
+export const GHOST = 0.3;             // s: how far ahead the turned axle is drawn
 const [USUAL, LONGEST] = [1.3, 4.5];  // radii of the wheel: an arrow of the mean square, and the longest
-const SAMPLES = 200;    // of a motion, for the scale of its arrows
-const SMALL = 1e-4;     // of a start, from upright rolling
+const SAMPLES = 200;                  // of a motion, for the scale of its arrows
+const SMALL = 1e-4;                   // of a start, from upright rolling
 const UPRIGHT = Math.PI / 2;
 
 /** Units of the kinds of arrows; a length is drawn as it is. */
@@ -22,8 +22,8 @@ export const KINDS = {
 const arms = ({r_0, r}, theta) => [r_0 + r * Math.sin(theta), r * Math.cos(theta)];
 
 /**
- * About the contact, where the road has no moment: the angular momentum L along e3, and the moment M of the weight along
- * e1. L omega_2 is the part of M that turns the axle; the rest tilts it.
+ * About the contact, where the road has no moment: the angular momentum L along e3, and the moment M of the weight
+ * along e1. L omega_2 is the part of M that turns the axle; the rest tilts it.
  */
 export function precession(wheel, at) {
   const {m, g, r_0, J_z} = wheel;
@@ -120,16 +120,14 @@ export const PICTURES = {
           {...own, name: 'slip', vector: [...slip, 0], from: beside(-0.9), color: '--slide'},
         ];
       }),
-  slip: picture(
-      ['slip_x', 'slip_y'],
-      (wheel, at) => [{
-        name: 'slip',
-        kind: 'speed',
-        place: 'contact',
-        vector: [at('slip_x'), at('slip_y'), 0],
-        from: [0, 0, 0.03 * wheel.r_0],
-        color: '--slide'
-      }]),
+  slip: picture(['slip_x', 'slip_y'], (wheel, at) => [{
+                                        name: 'slip',
+                                        kind: 'speed',
+                                        place: 'contact',
+                                        vector: [at('slip_x'), at('slip_y'), 0],
+                                        from: [0, 0, 0.03 * wheel.r_0],
+                                        color: '--slide'
+                                      }]),
   force: picture(
       ['lambda_1', 'lambda_2', 'lambda_3'],
       (_wheel, at) => {
@@ -154,8 +152,8 @@ export function arrowsOf({table, parameters}, names, t) {
 }
 
 /**
- * {kind: {number: what an arrow as long as the radius stands for, colours: {name: of the arrow}}}: one for all wheels and
- * their whole motion.
+ * {kind: {number: what an arrow as long as the radius stands for, colours: {name: of the arrow}}}: one for all wheels
+ * and their whole motion.
  */
 export function unitsOf(wheels, names) {
   const found = {};

@@ -1,12 +1,15 @@
 // The steps of the lesson (docs/physics.md). Each has its picture, its one or two diagrams, its one to three controls,
-// and a text that takes every figure from the motion of the step's own start. wheel: {table, phases, parameters}; other:
-// the one beside it.
+// and a text that takes every figure from the motion of the step's own start. wheel: {table, phases, parameters};
+// other: the one beside it.
 import {DEGREES, live} from '#dom';
 import {contact, criticalSpin, GHOST} from '#pictures';
 import {extent} from '#table';
 
 export const MEASURE = 20;  // degrees of lean, from which on a wheel counts as one that does not stay up
-const PAPER = {lean: 15, spin: 2};
+const PAPER = {
+  lean: 15,
+  spin: 2
+};
 
 const leansOf = ({table}) => table.columns.theta.map((theta) => Math.abs(90 - DEGREES * theta));
 /** The largest lean of a motion, in degrees. */
@@ -28,7 +31,10 @@ export const FREE = {
 };
 
 /** Of a wheel in a fork, in the place of precession: the moment of the fork. */
-export const FORK = {name: 'carrier', diagrams: ['path', 'carrier']};
+export const FORK = {
+  name: 'carrier',
+  diagrams: ['path', 'carrier']
+};
 
 /**
  * A step: start: what is chosen at first, and what else belongs to its run (controls.js); beside: what differs for a
@@ -62,9 +68,11 @@ export function stepsOf() {
       eye: 'behind',
       text: (wheel) => `The weight tips the wheel: its moment <b>M</b> about the contact points along e<sub>1</sub>. The
         rolling wheel has an angular momentum <b>L</b> along its axle. M acts across L, so it does not make L longer: it
-        adds <b>dL</b> at its tip and turns it, and with it the axle (the ring: ${GHOST} s ahead). The wheel turns towards its lean, runs
+        adds <b>dL</b> at its tip and turns it, and with it the axle (the ring: ${
+          GHOST} s ahead). The wheel turns towards its lean, runs
         in a circle, and never leans by more than ${lean(wheel)}°.`,
-      attempt: 'Take its spin away. L gets shorter, the same M turns it faster; without any spin nothing turns, and it falls.',
+      attempt:
+          'Take its spin away. L gets shorter, the same M turns it faster; without any spin nothing turns, and it falls.',
       ask: {
         text: `This wheel starts with 15° of lean and 6 rad/s of spin. Flat on the ground is 90°. Draw into the diagram
           how its lean goes on; then play.`,
@@ -97,15 +105,18 @@ export function stepsOf() {
       picture: 'precession',
       diagrams: ['lean', 'bars'],
       eye: 'behind',
-      text: (slow, fast) => `Both moments are equal at ω<sub>crit</sub> = ${limit.toFixed(2)} rad/s. Above it the turn rights
+      text: (slow, fast) =>
+          `Both moments are equal at ω<sub>crit</sub> = ${limit.toFixed(2)} rad/s. Above it the turn rights
         more than the weight tips: the faster wheel sways by ${lean(fast)}°. Below it the lean grows until it is no
         longer small: the slower one leans by ${lean(slow)}°. The mass cancels, its distribution does not.`,
       attempt: 'Start with more lean: above how much does the faster one lean by more than 20°, too?',
       ask: {
-        text: `Two wheels with half a degree of lean: one 10 % slower than ${limit.toFixed(2)} rad/s, one 10 % faster. Which of
+        text: `Two wheels with half a degree of lean: one 10 % slower than ${
+            limit.toFixed(2)} rad/s, one 10 % faster. Which of
           them leans by more than ${MEASURE}° within ten seconds?`,
         fates: ['Neither.', 'Only the slower one.', 'Only the faster one.', 'Both.'],
-        right: (slow, fast) => [slow, fast].reduce((sum, wheel, i) => sum + (Number(lean(wheel)) > MEASURE) * (i + 1), 0),
+        right:
+            (slow, fast) => [slow, fast].reduce((sum, wheel, i) => sum + (Number(lean(wheel)) > MEASURE) * (i + 1), 0),
         until: 6,
       },
     },
@@ -114,12 +125,14 @@ export function stepsOf() {
       start: PAPER,
       controls: ['spin', 'lean'],
       diagrams: ['lean', 'phase'],
-      text: (wheel) => `Far too slow to stay up, it comes down to a lean of ${lean(wheel)}°, turns fast about the vertical,
+      text: (wheel) =>
+          `Far too slow to stay up, it comes down to a lean of ${lean(wheel)}°, turns fast about the vertical,
         and rises to its 15° again: nothing takes energy. Every half swing is the one before, turned and mirrored, so
         the rate of the tilt over the tilt is one closed curve, run through for ever.`,
       attempt: 'Change the spin: each motion has a closed curve of its own.',
       ask: {
-        text: `The paper's wheel: 15° of lean and only 2 rad/s, too little to stay up; no friction. Draw into the diagram how
+        text:
+            `The paper's wheel: 15° of lean and only 2 rad/s, too little to stay up; no friction. Draw into the diagram how
           its lean goes on for ten seconds; then play.`,
         until: 5,
       },
@@ -132,7 +145,8 @@ export function stepsOf() {
       diagrams: ['spin', 'hold'],
       eye: 'abreast',
       text: ({table, phases: {sticks: [[begin]], transitions}}) => `The ground gives way: its force N acts ahead of the
-        contact, by s = 0.03 m. So it has a moment s N about the axle, against the spin. At ${begin.toFixed(2)} s the spin
+        contact, by s = 0.03 m. So it has a moment s N about the axle, against the spin. At ${
+          begin.toFixed(2)} s the spin
         is used up. From then on N moves only as far as it takes to hold the spin at zero (orange); where that takes
         more than s N (the band), the wheel is released. In ${table.end.toFixed(0)} s it is held, released or reversed
         ${transitions.length} times.`,
@@ -147,9 +161,11 @@ export function stepsOf() {
       speed: 0.25,
       at: 1,
       axes: true,
-      text: (wheel) => `Rolling resistance holds the turn about the axle e<sub>3</sub> and no other. So the held wheel nods
+      text: (wheel) =>
+          `Rolling resistance holds the turn about the axle e<sub>3</sub> and no other. So the held wheel nods
         and turns, as a coin that pivots on a table: while it is held for the first time, for
-        ${whileHeld(wheel, 'time').toFixed(2)} s, its heading turns by ${(DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. A
+        ${whileHeld(wheel, 'time').toFixed(2)} s, its heading turns by ${
+              (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. A
         moment does no work where nothing turns about its axis: E stays level while the wheel is held.`,
       attempt: 'Look at E where the wheel is held (orange), and where it is not.',
     },
@@ -163,7 +179,8 @@ export function stepsOf() {
       },
       controls: ['push', 'spin'],
       diagrams: ['energy', 'spin'],
-      text: (wheel) => `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from ${joules(wheel, 1)} J
+      text: (wheel) =>
+          `A motor pushes with 4 N m about the axle from 1 s to 3 s: the energy rises from ${joules(wheel, 1)} J
         to ${joules(wheel, 3)} J. From 6 s to 7.5 s a dry brake takes it down to ${joules(wheel, 7.5)} J. Otherwise the
         energy is constant.`,
       attempt: 'Hold a button at any instant: the past stays, and a new future is computed at once.',
@@ -181,9 +198,11 @@ export function stepsOf() {
         const way = Math.hypot(...['X_O', 'Y_O'].map((name) => at(wheel, end)(name) - at(wheel, begin)(name)));
         return `A fork holds this wheel upright. The brake rises to 100 N m within half a second, and with it the road's
           force, until it touches the outer circle, μ<sub>max</sub> N, at ${begin.toFixed(2)} s. There the grip is lost:
-          the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${(locked - begin).toFixed(2)} s
+          the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${
+            (locked - begin).toFixed(2)} s
           later the wheel is locked: R ω<sub>z</sub> is zero, and the slip is v. It slides
-          ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${(wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
+          ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${
+            (wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
       },
       attempt: 'Brake with 50 N m: the force stays within the outer circle, the wheel rolls on, and it stops sooner.',
     },
@@ -198,8 +217,10 @@ export function stepsOf() {
       text: (wheel) => {
         const end = wheel.phases.slides[0][1];
         const {v: [v], turn: [turn], slip: [slip]} = contact(wheel.parameters, at(wheel, 0));
-        return `Thrown forward at v = ${v.toFixed(1)} m/s and spinning backward, R ω<sub>z</sub> = ${turn.toFixed(1)} m/s, the wheel
-          touches the road with a slip of ${slip.toFixed(1)} m/s: the sum of both. The road's force acts against the slip,
+        return `Thrown forward at v = ${v.toFixed(1)} m/s and spinning backward, R ω<sub>z</sub> = ${
+            turn.toFixed(1)} m/s, the wheel
+          touches the road with a slip of ${
+            slip.toFixed(1)} m/s: the sum of both. The road's force acts against the slip,
           μ<sub>slide</sub> N on the inner circle; it brakes v and the backspin alike. At ${end.toFixed(2)} s their
           sum is zero: the wheel rolls, and comes back at ${(-at(wheel, wheel.table.end)('v_x')).toFixed(2)} m/s.`;
       },
@@ -216,7 +237,8 @@ export function stepsOf() {
       free: true,
       start: {...PAPER, s: 0, mu: 0, steer: 0, body: 'tyre'},
       controls: ['body', 'lean', 'spin', 's', 'mu', 'steer', 'push'],
-      text: () => `The wheel is yours. <b>Grip</b> 0 means that it never slides; else it slides with 85 % of that friction
+      text: () =>
+          `The wheel is yours. <b>Grip</b> 0 means that it never slides; else it slides with 85 % of that friction
         coefficient. <b>Steer</b> puts it into a fork that turns it from 1 s on. A run ends where the wheel lies flat,
         where it would lift off (N = 0), and where it jams while it slides.`,
       attempt: 'Which of the four bodies needs the most spin to stay up? Roll a coin of your own across the desk.',
