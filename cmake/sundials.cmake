@@ -26,9 +26,21 @@ function(fetch_sundials source_dir)
   set(new ${cache}/new)
   file(REMOVE_RECURSE ${new})
   file(MAKE_DIRECTORY ${new})
+  # By a manifest, which cargo of any age reads. Empty packages stand for those that would build the crate.
+  set(manifest "[package]\nname = \"@name@\"\nversion = \"@version@\"\n[lib]\npath = \"Cargo.toml\"\n")
+  set(patches "[patch.crates-io]\n")
+  foreach(of bindgen=0.68.0 cmake=0.1.50 vcpkg=0.2.15 fetch=0.0.0)
+    string(REGEX MATCH "(.*)=(.*)" of ${of})
+    set(name ${CMAKE_MATCH_1})
+    set(version ${CMAKE_MATCH_2})
+    string(CONFIGURE "${manifest}" text @ONLY)
+    file(WRITE ${new}/${name}/Cargo.toml "${text}")
+    string(APPEND patches "${name} = { path = \"../${name}\" }\n")
+  endforeach()
+  file(APPEND ${new}/fetch/Cargo.toml "[dependencies]\nsundials-sys = \"=0.6.2\"\n${patches}")
   execute_process(
-    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${new} ${CARGO} info sundials-sys@0.6.2
-    WORKING_DIRECTORY ${new}
+    COMMAND ${CMAKE_COMMAND} -E env CARGO_HOME=${new} ${CARGO} fetch
+    WORKING_DIRECTORY ${new}/fetch
     OUTPUT_QUIET
     ERROR_VARIABLE trouble
   )

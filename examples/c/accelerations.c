@@ -14,7 +14,7 @@ int main(void) {
   WheelParameters wheel = {.m = 20, .r_0 = 0.3, .r = 0.05, .J_x = 0.9, .J_y = 0.9, .J_z = 1.8, .g = 9.81, .s = 0.03};
   WheelMotion motion = {.psi = 1.570796, .theta = 1.308997, .phi_dot = -2};
   WheelLoad drive = {.M = {0, 0, -5}};
-  double y[WHEEL_MAX_STATES];
+  double y[WHEEL_SLIDING_STATES];
   wheel_reduced.start(&wheel, &motion, y);
 
   WheelScene free_wheel = wheel_scene(&wheel, NULL, (WheelFriction){.kind = WHEEL_FRICTIONLESS});

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "axle_law.h"
 #include "paper_matrices.hpp"
 
 namespace wheel::paper {
@@ -67,12 +68,12 @@ double omega_z_dot(const Multibody& s, const Vector9& unknowns) {
 
 // (22): the moment -s N kappa about the axle as a matrix on lambda. The third component of lambda in body axes is not
 // N, so [B*] acts on lambda in fixed axes: row z, column Z.
-Matrix3 B_star(const WheelParameters& w, double kappa) { return Vector3(0, 0, -w.s * kappa).asDiagonal(); }
+Matrix3 B_star(const AxleLaw& law) { return Vector3(0, 0, -law.lever).asDiagonal(); }
 
 // (23): how lambda enters the equations of motion.
-Matrix63 B_tilde(const Multibody& s, double kappa) {
+Matrix63 B_tilde(const Multibody& s, const AxleLaw& law) {
   Matrix63 B_tilde;
-  B_tilde << Matrix3::Identity(), s.r * s.A.transpose() + B_star(s.wheel, kappa);
+  B_tilde << Matrix3::Identity(), s.r * s.A.transpose() + B_star(law);
   return B_tilde;
 }
 
@@ -92,15 +93,15 @@ Vector3 F_beta(const Multibody& s) {
 }
 
 // (24), ready for a law of friction.
-struct Instant {
+struct Equations {
   const WheelScene& scene;
   Multibody s;
   bool slides;
   Vector9 column;  // right-hand side
 };
 
-Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
-  Instant now = {scene, Multibody(scene.wheel, y, slides), slides, {}};
+Equations equations_of(const WheelScene& scene, const double* y, bool slides) {
+  Equations now = {scene, Multibody(scene.wheel, y, slides), slides, {}};
   now.column << F(now.s, scene.load), -now.s.B_dot * now.s.q_dot;
   now.column.segment<3>(3) += F_beta(now.s);
   if (slides) now.column.segment<2>(6).setZero();
@@ -109,12 +110,12 @@ Instant instant_of(const WheelScene& scene, const double* y, bool slides) {
 
 // Matrix of (24), with [M] from (18). Where the wheel slides, lambda_1 + mu d_X lambda_3 = 0 and the same along Y stand
 // in the place of the horizontal constraints.
-Matrix9 system_matrix(const Instant& now, double kappa, double mu) {
+Matrix9 system_matrix(const Equations& now, const AxleLaw& law, double mu) {
   const Multibody& s = now.s;
   Matrix9 K = Matrix9::Zero();
   K.block<3, 3>(0, 0) = s.wheel.m * Matrix3::Identity();
   K.block<3, 3>(3, 3) = J(s.wheel) * s.Q;
-  K.block<6, 3>(0, 6) = -B_tilde(s, kappa);
+  K.block<6, 3>(0, 6) = -B_tilde(s, law);
   K.block<3, 6>(6, 0) = s.B;
   if (!now.slides) return K;
   K.block<2, 9>(6, 0).setZero();
@@ -143,26 +144,25 @@ struct Solution {
 };
 
 // A ground that pulls has no friction: only the brake's part is left.
-Solution solve(const Instant& now, bool pulls) {
+Solution solve(const Equations& now, bool pulls) {
   const Multibody& s = now.s;
-  const double kappa = wheel_kappa(&now.scene.friction, s.omega_z), brake = now.scene.load.brake;
+  const AxleLaw law = axle_law_of(&now.scene, wheel_kappa(&now.scene.friction, s.omega_z), pulls);
   Vector9 column = now.column;
-  column[about_axle] -= brake * kappa;  // tau = -(s N + brake) kappa
-  Matrix9 matrix = system_matrix(now, pulls ? 0 : kappa, pulls ? 0 : now.scene.mu_slide);
+  column[about_axle] -= law.brake;
+  Matrix9 matrix = system_matrix(now, law, pulls ? 0 : now.scene.mu_slide);
   if (now.scene.guided) guide(now.scene.load, matrix, column);
   const Eigen::PartialPivLU<Matrix9> K(matrix);
   const Vector9 unknowns = K.solve(column);
-  if (now.scene.friction.kind == WHEEL_HELD) {  // tau is found from omega_z_dot = 0, linearly; kappa = 0
+  if (law.held) {  // tau is found from omega_z_dot = 0, linearly; kappa = 0
     const Vector9 unit = K.solve(Vector9::Unit(about_axle));
     const double compliance = s.Q.row(2).dot(unit.segment<3>(3)), tau = -omega_z_dot(s, unknowns) / compliance;
     return {unknowns + unit * tau, tau, now.slides ? K.determinant() * compliance : 0};
   }
-  const double tau = kappa == 0 ? 0 : -((pulls ? 0 : s.wheel.s * unknowns[lambda_3]) + brake) * kappa;
-  return {unknowns, tau, now.slides ? K.determinant() : 0};
+  return {unknowns, axle_moment_of(&law, unknowns[lambda_3]), now.slides ? K.determinant() : 0};
 }
 
 // (24) under the scene's law of friction.
-Solution solve(const Instant& now) {
+Solution solve(const Equations& now) {
   const WheelGround ground = now.scene.ground;
   if (ground == WHEEL_GROUND_PULLS) return solve(now, true);
   Solution presses = solve(now, false);
@@ -172,7 +172,7 @@ Solution solve(const Instant& now) {
   return N <= 0 ? solve(now, true) : presses;
 }
 
-double spin_rate(const Instant& now, const Solution& solution) {
+double spin_rate(const Equations& now, const Solution& solution) {
   return now.scene.friction.kind == WHEEL_HELD ? 0 : omega_z_dot(now.s, solution.unknowns);
 }
 
@@ -180,7 +180,7 @@ double spin_rate(const Instant& now, const Solution& solution) {
 // Returns N, infinite where the wheel jams.
 template <bool slides>
 double derivative(const WheelScene* scene, const double* y, double* y_dot) {
-  const Instant now = instant_of(*scene, y, slides);
+  const Equations now = equations_of(*scene, y, slides);
   const Multibody& s = now.s;
   const Solution solution = solve(now);
   const Vector6 &q_dot = s.q_dot, q_ddot = solution.unknowns.head<6>();
@@ -218,7 +218,7 @@ void kinematics(const WheelParameters* wheel, const double* y, WheelKinematics* 
 
 template <bool slides>
 void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  const Instant now = instant_of(*scene, y, slides);
+  const Equations now = equations_of(*scene, y, slides);
   const Solution solution = solve(now);
   const auto& [x, tau, determinant] = solution;
   *out = {x[X_O], x[Y_O], x[Z_O], x[psi], x[theta], x[phi], spin_rate(now, solution), {}, tau};

@@ -47,9 +47,11 @@ double wheel_required_friction_rate(const double lambda[3], const double lambda_
   return (lambda[0] * lambda_dot[0] + lambda[1] * lambda_dot[1]) / (mu * N) / N - mu * lambda_dot[2] / N;
 }
 
-/* brake / (brake + s N); a ground that pulls has no friction. Without any capacity there is no tau. */
+double wheel_axle_capacity(double s, double N, double brake) { return s * (N < 0 ? 0 : N) + brake; }
+
+/* Without any capacity there is no tau. */
 static double brake_part(const WheelAxleMoment* now, double* capacity) {
-  *capacity = now->brake + now->s * fmax(now->N, 0);
+  *capacity = wheel_axle_capacity(now->s, now->N, now->brake);
   return *capacity > 0 ? now->brake / *capacity : 1;
 }
 

@@ -5,6 +5,7 @@
  * points from O to the contact. docs/equations.md derives every line. State and geometry: frame.h. */
 #include <math.h>
 
+#include "axle_law.h"
 #include "frame.h"
 
 /* The terms of Newton's and Euler's equations without omega_dot: the force k = m b - F, N (b: acceleration of O without
@@ -25,14 +26,6 @@ typedef struct System {
   double omega_1_dot, N;      /* for tau = 0 */
   double tilt_per_tau, alpha; /* change of omega_1_dot and of N per unit of tau: 0 where p = 0 */
 } System;
-
-/* The law of friction at one instant: tau = -(lever N + brake), or, if held, the tau that keeps omega_3 constant. */
-typedef struct AxleLaw {
-  int held;
-  int branch_kept; /* where N < 0 too */
-  double lever;    /* m, s kappa */
-  double brake;    /* N m, capacity of the brake times kappa */
-} AxleLaw;
 
 /* (load, inertia, geometry, omega) => k, moment */
 INLINED Drift drift_of(const WheelScene* scene, const Inertia* I, const Frame* f) {
@@ -80,13 +73,12 @@ INLINED System system_of(const WheelParameters* w, const Inertia* I, const Frame
   return s;
 }
 
-/* (system, law) => tau, the moment about the axle. Rolling: tau = -(lever N + brake) and N = N_free + alpha tau. Held:
- * omega_3_dot = 0. */
+/* (system, law) => tau; N = N_free + alpha tau. Held: omega_3_dot = 0. */
 static inline double axle_moment(const System* s, const AxleLaw* law) {
   if (law->held) return s->a_23 * (s->b_2 / s->b_22) - s->h_3;
   double N = s->N;
   if (s->alpha != 0) N = (N - s->alpha * law->brake) / (1.0 + s->alpha * law->lever);
-  return -(law->lever * N + law->brake);
+  return axle_moment_of(law, N);
 }
 
 /* (system, law) => omega_dot, N, tau */
@@ -102,9 +94,9 @@ static inline Accelerations solve(const System* s, const AxleLaw* law) {
 }
 
 /* The same where the ground may pull (N <= 0): then the ground's part of the friction is zero, in the law too. */
-INLINED Accelerations move(const System* s, AxleLaw law) {
+INLINED Accelerations move(const System* s, WheelGround ground, AxleLaw law) {
   Accelerations a = solve(s, &law);
-  if (a.N > 0 || law.branch_kept || law.lever == 0) return a;
+  if (a.N > 0 || ground == WHEEL_GROUND_PRESSES || law.lever == 0) return a;
   law.lever = 0;
   return solve(s, &law);
 }
@@ -116,25 +108,14 @@ INLINED Accelerations move_guided(const WheelScene* scene, const Frame* f, const
   double rise = w->r_0 * (f->cos_theta * omega_1_dot - f->sin_theta * (f->omega_1 * f->omega_1)); /* m/s2 */
   double N = w->m * (w->g + rise) - scene->load.F[2];
   double h_3 = d->M.M_3 + f->rho * (d->k_1 + w->m * (f->eta * omega_2_dot));
-  if (!(N > 0 || law.branch_kept)) law.lever = 0;
-  double tau = law.held ? -h_3 : -(law.lever * N + law.brake);
+  if (!(N > 0 || scene->ground == WHEEL_GROUND_PRESSES)) law.lever = 0;
+  double tau = law.held ? -h_3 : axle_moment_of(&law, N);
   return (Accelerations){
       .omega_1_dot = omega_1_dot,
       .omega_2_dot = omega_2_dot,
       .omega_3_dot = law.held ? 0.0 : (h_3 + tau) / (w->J_z + w->m * (f->rho * f->rho)),
       .N = N,
       .tau = tau,
-  };
-}
-
-/* (friction, brake, omega_3) => law about the axle */
-INLINED AxleLaw law_of(const WheelScene* scene, double omega_3) {
-  double kappa = kappa_of(&scene->friction, omega_3);
-  return (AxleLaw){
-      .held = scene->friction.kind == WHEEL_HELD,
-      .branch_kept = scene->ground == WHEEL_GROUND_PRESSES,
-      .lever = scene->ground == WHEEL_GROUND_PULLS ? 0.0 : scene->wheel.s * kappa,
-      .brake = scene->load.brake * kappa,
   };
 }
 
@@ -148,13 +129,14 @@ typedef struct Instant {
 /* (scene, y) => geometry, drift, accelerations; inlined as the frame is */
 INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
-  AxleLaw law = law_of(scene, y[WHEEL_OMEGA_3]); /* first: behind a call of tanh nothing is left in registers */
+  double kappa = kappa_of(&scene->friction, y[WHEEL_OMEGA_3]); /* first: a call of tanh leaves nothing in registers */
+  AxleLaw law = axle_law_of(scene, kappa, scene->ground == WHEEL_GROUND_PULLS);
   Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
   Frame frame = frame_of(w, y);
   Drift drift = drift_of(scene, &inertia, &frame);
   if (guided) return (Instant){frame, drift, move_guided(scene, &frame, &drift, law)};
   System system = system_of(w, &inertia, &frame, &drift);
-  return (Instant){frame, drift, move(&system, law)};
+  return (Instant){frame, drift, move(&system, scene->ground, law)};
 }
 
 /* (instant) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */

@@ -3,6 +3,7 @@
  * e3; x along e1, y horizontal to the left of it. docs/equations.md derives every line. */
 #include <string.h>
 
+#include "axle_law.h"
 #include "frame.h"
 
 /* What acts apart from the ground's friction, or its change. */
@@ -11,7 +12,7 @@ typedef struct Action {
   double N_still;  /* N, normal force for omega_1_dot = 0 */
   double a_x, a_y; /* m/s2, rate of the slip without friction and omega_dot */
   double guide[2]; /* rad/s2, omega_1_dot and omega_2_dot that a wheel carrier gives */
-  double brake;    /* N m */
+  double brake;    /* N m, of the law about the axle */
 } Action;
 
 static const Action none = {.brake = 0};
@@ -25,23 +26,23 @@ typedef struct Body {
   double per_mass, per_spin, per_22, per_tilt; /* inverse of m, J_z, I_22, and of I_11 - p^2 / I_22 + m l^2 */
   double g_x, g_y;                             /* what a unit of the ground's horizontal force adds to N */
   double N_free;                               /* N, normal force without sliding friction */
-  double mu, s;                                /* 1 and m, coefficients of the ground's friction; zero where it pulls */
-  double kappa;                                /* tau = -(s N + brake) kappa */
-  int held;                                    /* omega_3 is held at zero */
+  double mu;                                   /* coefficient of the ground's friction; zero where it pulls */
+  AxleLaw law;                                 /* for kappa = 1; its brake is part of what is given */
+  double kappa;                                /* tau is that of the law times kappa */
   int guided;                                  /* no moment turns the wheel across its axle: a wheel carrier does */
 } Body;
 
 /* What follows. */
-typedef struct Motion {
+typedef struct Response {
   Accelerations a;
   double u_x, u_y; /* m/s2, rate of the slip without the turning of the axes */
-} Motion;
+} Response;
 
 /* (action, horizontal force f of the ground) => omega_dot, N, tau, rate of the slip; linear in both:
  * J_z omega_3_dot = M_3 + rho f_x + tau, N = N_still + m l omega_1_dot, and unless a wheel carrier gives these two
  *   [ I_11 + m l^2  p    ]                [ M_1 - l N_still + h f_y ]
  *   [ p             I_22 ] {omega_dot} =  [ M_2 - eta f_x           ] */
-static inline Motion motion_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
+static inline Response response_of(const WheelParameters* w, const Body* b, const Action* on, double f_x, double f_y) {
   const Frame* f = &b->frame;
   double p = b->inertia.p, M_2 = on->M.M_2 - f->eta * f_x, M_3 = on->M.M_3 + f->rho * f_x;
   Accelerations a = {.omega_1_dot = on->guide[0], .omega_2_dot = on->guide[1]};
@@ -50,9 +51,10 @@ static inline Motion motion_of(const WheelParameters* w, const Body* b, const Ac
     a.omega_2_dot = (M_2 - p * a.omega_1_dot) * b->per_22;
   }
   a.N = on->N_still + w->m * b->l * a.omega_1_dot;
-  a.tau = b->held ? -M_3 : -(b->s * a.N + on->brake) * b->kappa;
-  a.omega_3_dot = b->held ? 0 : (M_3 + a.tau) * b->per_spin;
-  return (Motion){
+  const AxleLaw law = {.lever = b->law.lever, .brake = on->brake};
+  a.tau = b->law.held ? -M_3 : axle_moment_of(&law, a.N) * b->kappa;
+  a.omega_3_dot = b->law.held ? 0 : (M_3 + a.tau) * b->per_spin;
+  return (Response){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,
       .u_y = on->a_y + f_y * b->per_mass + b->h * a.omega_1_dot,
@@ -84,14 +86,14 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   a->N_still = w->m * (w->g - w->r_0 * f->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + f->omega_1 * (w->r * f->sin_theta * f->omega_2 + f->eta * f->omega_3 - f->psi_dot * b.h);
   a->a_y = F_y * b.per_mass + b.l * omega_1_2 - f->psi_dot * f->v_1;
-  a->brake = load->brake;
   b.kappa = kappa_of(&scene->friction, f->omega_3);
-  b.held = scene->friction.kind == WHEEL_HELD;
-  b.N_free = motion_of(w, &b, a, 0, 0).a.N;
+  b.law = axle_law_of(scene, 1, 1);
+  a->brake = b.law.brake;
+  b.N_free = response_of(w, &b, a, 0, 0).a.N;
   /* The sign of N is that without sliding friction as long as there is room. */
   if (scene->ground == WHEEL_GROUND_PULLS || (scene->ground == WHEEL_GROUND_BY_FORCE && b.N_free <= 0)) return b;
   b.mu = scene->mu_slide;
-  b.s = w->s;
+  b.law = axle_law_of(scene, 1, 0);
   return b;
 }
 
@@ -101,17 +103,17 @@ static inline double room_of(const Body* b, double d_x, double d_y) {
 }
 
 /* (direction d of the slip) => motion under mu N against it */
-static inline Motion slide(const WheelParameters* w, const Body* b, double d_x, double d_y) {
+static inline Response slide(const WheelParameters* w, const Body* b, double d_x, double d_y) {
   double force = b->mu * b->N_free / room_of(b, d_x, d_y);
-  return motion_of(w, b, &b->given, -force * d_x, -force * d_y);
+  return response_of(w, b, &b->given, -force * d_x, -force * d_y);
 }
 
 /* (direction chi of the slip) => N, room, growth, turn, settling */
 static WheelSlip slip_of(const WheelParameters* w, const Body* b, double chi) {
   double d_x = cos(chi), d_y = sin(chi), room = room_of(b, d_x, d_y);
-  Motion m = slide(w, b, d_x, d_y);
+  Response m = slide(w, b, d_x, d_y);
   double N = m.a.N, N_turn = b->mu * N * (b->g_x * d_y - b->g_y * d_x) / room; /* dN/d(chi) */
-  Motion turned = motion_of(w, b, &none, -b->mu * (N_turn * d_x - N * d_y), -b->mu * (N_turn * d_y + N * d_x));
+  Response turned = response_of(w, b, &none, -b->mu * (N_turn * d_x - N * d_y), -b->mu * (N_turn * d_y + N * d_x));
   double growth = m.u_x * d_x + m.u_y * d_y;
   return (WheelSlip){
       .N = N,
@@ -167,7 +169,8 @@ double wheel_slip_direction(const WheelScene* scene, const double* reduced) {
   const double rounding = 1e-9;
   const WheelParameters* w = &scene->wheel;
   Body b = body_of(scene, reduced, scene->guided);
-  Motion free = motion_of(w, &b, &b.given, 0, 0), x = motion_of(w, &b, &none, 1, 0), y = motion_of(w, &b, &none, 0, 1);
+  Response free = response_of(w, &b, &b.given, 0, 0), x = response_of(w, &b, &none, 1, 0),
+           y = response_of(w, &b, &none, 0, 1);
   /* against the force of rolling, for which u_x = u_y = 0; its size does not matter */
   double against = wheel_angle_of(y.u_y * free.u_x - y.u_x * free.u_y, x.u_x * free.u_y - x.u_y * free.u_x);
   double least = -rounding * (fabs(free.u_x) + fabs(free.u_y)), chi = NAN;
@@ -195,7 +198,7 @@ INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, in
   Body b = body_of(scene, y, guided);
   const Frame* f = &b.frame;
   double d_x = chi.cosine, d_y = chi.sine, X_dot, Y_dot;
-  Motion m = slide(&scene->wheel, &b, d_x, d_y);
+  Response m = slide(&scene->wheel, &b, d_x, d_y);
   double chi_dot = y[WHEEL_SLIP] == 0 ? 0 : (m.u_y * d_x - m.u_x * d_y) / y[WHEEL_SLIP] - f->psi_dot;
   set_velocity(f, b.h, y[WHEEL_SLIP] * d_x, y[WHEEL_SLIP] * d_y, &X_dot, &Y_dot);
   set_rates(f, &m.a, y_dot);
@@ -224,7 +227,7 @@ static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* ou
   Body b = body_of(scene, y, scene->guided);
   Sines chi = wheel_sines(y[WHEEL_CHI]);
   double d_x = chi.cosine, d_y = chi.sine;
-  Motion m = slide(&scene->wheel, &b, d_x, d_y);
+  Response m = slide(&scene->wheel, &b, d_x, d_y);
   to_fixed(&b.frame, d_x, d_y, &out->lambda[0], &out->lambda[1]);
   for (int i = 0; i < 2; ++i) out->lambda[i] *= -b.mu * m.a.N;
   set_dynamics(scene, &b.frame, &m.a, out);

@@ -205,6 +205,9 @@ double wheel_required_friction(const double lambda[3]);
  * infinite. */
 double wheel_required_friction_rate(const double lambda[3], const double lambda_dot[3]);
 
+/* N m, the largest moment of ground and brake about the axle: s N + brake. A ground that pulls has no friction. */
+double wheel_axle_capacity(double s, double N, double brake);
+
 /* What acts about the axle, or its rate by some quantity. */
 typedef struct WheelAxleMoment {
   double tau;   /* N m, moment of ground and brake */

@@ -11,18 +11,18 @@ namespace legality = fmi::legality;
 
 namespace {
 
-bool is_input(fmi2ValueReference v) { return v >= wheel::first_input && v < wheel::stored_count; }
+bool is_input(unsigned v) { return v >= wheel::first_input && v < wheel::stored_count; }
 
-bool is_real_output(fmi2ValueReference v) {
+bool is_real_output(unsigned v) {
   return wheel::is_variable(v, wheel::Type::real) && wheel::row_of(v).role == Role::output;
 }
 
 // Of a directional derivative.
-bool is_unknown(fmi2ValueReference v) { return v >= wheel::stored_count && wheel::is_variable(v, wheel::Type::real); }
+bool is_unknown(unsigned v) { return v >= wheel::stored_count && wheel::is_variable(v, wheel::Type::real); }
 
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
 // depend on the parameters.
-bool is_known(const Instance& i, fmi2ValueReference v) {
+bool is_known(const Instance& i, unsigned v) {
   const bool exchanged = i.wheel.demand.kind == wheel::Kind::model_exchange, begun = has_begun(i.wheel.run.phase);
   return is_input(v) || (begun ? exchanged && wheel::place_in_x(v) >= 0 : v < wheel::stored_count);
 }
@@ -30,7 +30,7 @@ bool is_known(const Instance& i, fmi2ValueReference v) {
 template <class Fits>
 bool check_all(const Instance& i, const fmi2ValueReference v[], std::size_t n, Fits fits, const char* what) {
   return std::all_of(v, v + n, [&](fmi2ValueReference reference) {
-    return i.check(fits(reference), "%s: value reference %u is not %s.", reference, what);
+    return i.check(fits(wheel::variable_of(reference)), "%s: value reference %u is not %s.", reference, what);
   });
 }
 
@@ -41,14 +41,15 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   return guarded(c, legality::set_input_derivatives, [=](Instance& i) {
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
     if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
+    const wheel::Listed inputs = {v};
     for (std::size_t k = 0; k < n; ++k)
       if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]) ||
-          (values[k] != 0 && is_idle(i.wheel, v[k])))
+          (values[k] != 0 && is_idle(i.wheel, inputs[k])))
         return i.log(Topic::error,
                      "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, of a carrier's rate "
                      "only where it turns: guided, by co-simulation.",
-                     orders[k], values[k], wheel::row_of(v[k]).name, wheel::max_order);
-    for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, v[k], values[k], orders[k]);
+                     orders[k], values[k], wheel::row_of(inputs[k]).name, wheel::max_order);
+    for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, inputs[k], values[k], orders[k]);
     return fmi2OK;
   });
 }
@@ -60,10 +61,10 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!check_all(i, v, n, is_real_output, "a real output")) return fmi2Error;
     for (std::size_t k = 0; k < n; ++k)
       if (!i.check(orders[k] == 1, "%s: order %d of %s: only the first derivative is provided.", orders[k],
-                   wheel::row_of(v[k]).name))
+                   wheel::row_of(wheel::variable_of(v[k])).name))
         return fmi2Error;
     const fmi2Status status = i.prepare_reading(v, n);
-    if (status == fmi2OK) wheel::read_rates(i.wheel, v, n, values);
+    if (status == fmi2OK) wheel::read_rates(i.wheel, {v}, n, values);
     return status;
   });
 }
@@ -73,16 +74,18 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         fmi2Real values[]) {
   return guarded(c, legality::get_values, [=](Instance& i) {
     if (!i.check_arrays(n_unknowns, unknowns, values) || !i.check_arrays(n_knowns, knowns, seeds)) return fmi2Error;
-    const auto known = [&](fmi2ValueReference v) { return is_known(i, v); };
+    const auto known = [&](unsigned v) { return is_known(i, v); };
     if (!check_all(i, knowns, n_knowns, known, "an input")) return fmi2Error;
     if (!check_all(i, unknowns, n_unknowns, is_unknown, "a calculated real variable")) return fmi2Error;
     std::fill_n(values, n_unknowns, 0.0);
     if (!n_unknowns || !n_knowns) return fmi2OK;
     if (const fmi2Status status = i.prepare_reading(unknowns, n_unknowns)) return status;
-    for (std::size_t k = 0; k < n_knowns; ++k)
-      if (!wheel::add_slopes(i.wheel, knowns[k], seeds[k], unknowns, n_unknowns, values))
+    for (std::size_t k = 0; k < n_knowns; ++k) {
+      const unsigned variable = wheel::variable_of(knowns[k]);
+      if (!wheel::add_slopes(i.wheel, variable, seeds[k], {unknowns}, n_unknowns, values))
         return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
-                     wheel::row_of(knowns[k]).name, wheel::value_of(i.wheel, knowns[k]));
+                     wheel::row_of(variable).name, wheel::value_of(i.wheel, variable));
+    }
     if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
     return i.log(Topic::discard, "%s: a derivative is not finite here.");
   });

@@ -80,12 +80,13 @@ fmi2Status Instance::refuse(const Rule& rule) {
 }
 
 fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::size_t count) {
-  const fmi2ValueReference *const end = variables + count, *computed = variables;
-  while (computed != end && *computed < wheel::stored_count) ++computed;
-  if (computed == end || has_state(wheel.run.phase)) return fmi2OK;
+  const wheel::Listed listed = {variables};
+  std::size_t computed = 0;
+  while (computed < count && listed[computed] < wheel::stored_count) ++computed;
+  if (computed == count || has_state(wheel.run.phase)) return fmi2OK;
   if (!wheel::is_prepared(wheel)) return fmi2Discard;
   const bool readable = has_state(wheel.run.phase);
-  const char* const name = wheel::row_of(*computed).name;
+  const char* const name = wheel::row_of(listed[computed]).name;
   return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
 }
 

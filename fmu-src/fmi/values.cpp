@@ -13,9 +13,9 @@ namespace {
 
 bool check_variables(const Instance& i, Type type, const fmi2ValueReference variables[], std::size_t count,
                      const void* values) {
-  return i.check_arrays(count, variables, values) && std::all_of(variables, variables + count, [&](unsigned variable) {
-           return i.check(wheel::is_variable(variable, type),
-                          "%s: no variable of this type has the value reference %u.", variable);
+  return i.check_arrays(count, variables, values) && std::all_of(variables, variables + count, [&](unsigned reference) {
+           return i.check(wheel::is_variable(wheel::variable_of(reference), type),
+                          "%s: no variable of this type has the value reference %u.", reference);
          });
 }
 
@@ -35,13 +35,13 @@ auto get(Type type, const fmi2ValueReference variables[], std::size_t count, Val
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     const fmi2Status status = i.prepare_reading(variables, count);
     for (std::size_t k = 0; k < count && status == fmi2OK; ++k)
-      values[k] = represented<Value>(wheel::value_of(i.wheel, variables[k]));
+      values[k] = represented<Value>(wheel::value_of(i.wheel, wheel::variable_of(variables[k])));
     return status;
   };
 }
 
 // Parameters before the run, inputs and the road at any time, the states while another solver moves them.
-bool check_settable(const Instance& i, fmi2ValueReference variable) {
+bool check_settable(const Instance& i, unsigned variable) {
   const wheel::Row& row = wheel::row_of(variable);
   const bool running = is_running(i.wheel.run.phase);
   if (variable < wheel::stored_count)
@@ -52,7 +52,7 @@ bool check_settable(const Instance& i, fmi2ValueReference variable) {
 
 // During the run a value out of bounds is refused at once. Before the run it is taken, and all faults are logged
 // together at the end of initialization.
-bool check_value(Instance& i, fmi2ValueReference variable, double value) {
+bool check_value(Instance& i, unsigned variable, double value) {
   if (!is_running(i.wheel.run.phase)) return true;
   const auto refuse = [&](const char* reason, auto... limit) {
     const double kept = wheel::value_of(i.wheel, variable);
@@ -74,11 +74,12 @@ template <class Value>
 auto set(Type type, const fmi2ValueReference variables[], std::size_t count, const Value values[]) {
   return [=](Instance& i) {
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
+    const wheel::Listed listed = {variables};
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_settable(i, variables[k])) return fmi2Error;
+      if (!check_settable(i, listed[k])) return fmi2Error;
     for (std::size_t k = 0; k < count; ++k)
-      if (!check_value(i, variables[k], static_cast<double>(values[k]))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, variables[k], static_cast<double>(values[k]));
+      if (!check_value(i, listed[k], static_cast<double>(values[k]))) return fmi2Discard;
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, listed[k], static_cast<double>(values[k]));
     return fmi2OK;
   };
 }

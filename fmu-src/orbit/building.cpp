@@ -5,22 +5,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constant.hpp"
+
 namespace orbit {
 
 namespace {
 
-// The error of the half period is added once for every half. The half is therefore integrated to a fraction of the
-// tolerance, but not more exactly than rounding allows.
-constexpr double finer = 0.05, finest = 1e-14;
-// A looser tolerance than this would save little, since one nutation costs little, and its long steps would not be as
-// accurate as they estimate.
-constexpr double loosest = 1e-8;
-// Longest step over that of a motion that is stepped through: every turn of the run repeats these few steps.
-constexpr double shortening = 5.0 / 6;
-// In units of that fraction: a swing of omega_1 below least_swing cannot be separated from the errors of a few steps,
-// and a wheel that swings less than largest_steady is in steady motion. largest_break: how much a state may change
-// within the longest step by what breaks the symmetry, which rounding does too.
-constexpr double least_swing = 0.01, largest_steady = 0.003, largest_break = 0.1;
+CONSTANT(double, finer, 0.05, "of the tolerance",
+         "the half is integrated so exactly, since its error is added once for every half");
+CONSTANT(double, finest, 1e-14, "1", "of a tolerance: rounding allows no more");
+CONSTANT(double, loosest, 1e-8, "1",
+         "a looser tolerance saves little in one nutation, and its long steps are less accurate than they estimate");
+CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every turn of the run repeats these few steps");
+// In units of the fraction of the tolerance.
+CONSTANT(double, least_swing, 0.01, "errors",
+         "a smaller swing of omega_1 cannot be told from the errors of a few steps");
+CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
+CONSTANT(double, largest_break, 0.1, "errors",
+         "change of a state in the longest step by what breaks the symmetry, which rounding does too");
+CONSTANT(int, samples, 8, "instants", "of a half, at which its symmetry is tested");
 
 }  // namespace
 
@@ -28,7 +31,7 @@ constexpr double least_swing = 0.01, largest_steady = 0.003, largest_break = 0.1
 // and every watched function is the same.
 template <class Map>
 bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const Map& map) const {
-  constexpr double alike = 1e-5;
+  CONSTANT(double, alike, 1e-5, "1", "watched functions that differ by less are the same");
   double y[states], image[states], expected[states], rate[states], weights[states];
   read_integrated(t, y);
   read(t_image, image);
@@ -45,21 +48,28 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-Orbit::Result Orbit::build(solver::Problem problem, double tolerance, Pass pass, const double* y0,
-                           solver::Solver& solver) {
+bool Orbit::enter(const Motion& motion, bool known, solver::Solver& solver) {
+  if (!known || result_ == Result::refused) build(motion, solver);
+  return result_ != Result::refused && begin(motion);
+}
+
+Orbit::Result Orbit::build(const Motion& motion, solver::Solver& solver) {
+  const double tolerance = motion.tolerance;
+  solver::Problem problem = motion.problem;
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = y0[i];
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = motion.y0[i];
   problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
   problem.longest_step *= shortening;
   *this = Orbit();
   std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
   if (is_steady(problem, from_zero)) return result_ = Result::steady;
-  result_ = follow(problem, pass, from_zero, solver);
+  result_ = follow(problem, motion.on_event, from_zero, solver);
   counters_ = solver.counters();
   return result_;
 }
 
-bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_angle) {
+bool Orbit::begin(const Motion& motion) {
+  const double* y0 = motion.y0;
   latest_half_ = {};
   start_.psi_sum = y0[WHEEL_PSI];
   start_.phi_sum = y0[WHEEL_PHI];
@@ -68,8 +78,8 @@ bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_
   // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
   const double t = 0.6 * T2_;
   const auto turn = [&](double* rate) { set_place(rate, start_.rotation * place_of(rate)); };
-  if (!maps(problem, t, t, turn)) return false;
-  until_ = ends() ? T2_ : most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
+  if (!maps(motion.problem, t, t, turn)) return false;
+  until_ = ends() ? T2_ : motion.most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
   return true;
 }
 
@@ -78,13 +88,14 @@ bool Orbit::enter(const solver::Problem& problem, const double* y0, double most_
 //   the swing between both is no larger than errors: refused;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver) {
+Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0,
+                            solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
   bool turned = before == 0;
   if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
   for (;;) {
-    const solver::Outcome outcome = step(problem, pass, solver);
+    const solver::Outcome outcome = step(problem, on_event, solver);
     if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
     solver.read(solver.known_until(), y);
     if (y[WHEEL_OMEGA_1] != 0 && before != 0 && std::signbit(y[WHEEL_OMEGA_1]) != std::signbit(before)) {
@@ -106,13 +117,13 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Pass pass, const dou
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, Pass pass, solver::Solver& solver) {
+solver::Outcome Orbit::step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;
     double y[states];
     solver.read(solver.known_until(), y);
-    const solver::Consequence consequence = pass(problem.owner, solver.event(), solver.known_until(), y);
+    const solver::Consequence consequence = on_event(problem.owner, solver.event(), solver.known_until(), y);
     if (consequence == solver::Consequence::ends) return outcome;
     if (consequence == solver::Consequence::bends) return solver::Outcome::failed;
     const double t = solver.known_until();
@@ -134,7 +145,6 @@ double Orbit::turning_point(const solver::Problem& problem, double before, solve
 
 // Whether the half from T1 to T2 represents the whole motion.
 bool Orbit::unfold(const solver::Problem& problem, Result kind) {
-  constexpr int samples = 8;
   result_ = kind;
   take_half();
   for (int i = 0; i < samples; ++i)
@@ -155,7 +165,10 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
 // With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
 // state repeats for ever.
 bool Orbit::is_steady(const solver::Problem& problem, const double* y0) {
-  const double h = 1e-4 * std::sin(y0[WHEEL_THETA]), slowest = 0.5 / problem.longest_step;
+  CONSTANT(double, lean_tried, 1e-4, "of sin(theta)", "small against the bend of the rates, large against rounding");
+  CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
+  CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
+  const double h = lean_tried * std::sin(y0[WHEEL_THETA]), slowest = 0.5 / problem.longest_step;
   double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
   problem.derivative(problem.owner, 0, y0, rate);
   problem.weights(problem.owner, problem.share, y0, weights);
@@ -178,13 +191,13 @@ bool Orbit::is_steady(const solver::Problem& problem, const double* y0) {
       y0[WHEEL_OMEGA_1] == 0 && rate[WHEEL_OMEGA_1] == 0 && ahead[WHEEL_OMEGA_1] == 0 && behind[WHEEL_OMEGA_1] == 0;
   if (indifferent) return keep_steady(problem, y0, rate, problem.longest_step);
   const double stiffness = (behind[WHEEL_OMEGA_1] - ahead[WHEEL_OMEGA_1]) / (2 * h);
-  if (!(stiffness > 1e-3 * slowest * slowest)) return false;
+  if (!(stiffness > least_stiffness * slowest * slowest)) return false;
   const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / stiffness + std::fabs(y0[WHEEL_OMEGA_1]) / std::sqrt(stiffness);
   const double most_weight =
       std::fmax(weights[WHEEL_THETA], std::fmax(std::fabs(along[WHEEL_OMEGA_2]) * weights[WHEEL_OMEGA_2],
                                                 std::fabs(along[WHEEL_OMEGA_3]) * weights[WHEEL_OMEGA_3]));
   if (!(swing * most_weight < largest_steady)) return false;
-  return keep_steady(problem, y0, rate, std::fmin(problem.longest_step, 0.2 / std::fabs(rate[WHEEL_PSI])));
+  return keep_steady(problem, y0, rate, std::fmin(problem.longest_step, piece / std::fabs(rate[WHEEL_PSI])));
 }
 
 // Keeps the circle (or straight line) of a steady motion, of which any piece is a half: that of this length, s.

@@ -52,6 +52,19 @@ class Track {
   mutable int latest_ = 0;  // the piece read last
 };
 
+// A motion to be unfolded: a problem of the reduced form of a wheel, its start, and how far it may be read.
+struct Motion {
+  // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be unfolded.
+  using OnEvent = solver::Consequence (*)(void* owner, int event, double t, double* y);
+
+  solver::Problem problem;
+  double tolerance;
+  OnEvent on_event;
+  const double* y0;
+  double most_angle;  // rad, by which psi or phi may turn
+};
+
+// enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
 class Orbit {
  public:
   // unfolded: the motion never ends.
@@ -61,24 +74,18 @@ class Orbit {
   //   that have not the symmetry. The caller then steps through the motion from its start.
   enum class Result { refused, unfolded, steady, ended };
 
-  // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be
-  // unfolded.
-  using Pass = solver::Consequence (*)(void* owner, int event, double t, double* y);
-
-  // Integrates `problem` (the reduced form of a wheel) from y0 by DOP853. The solver has to be started
-  // anew before anything else is asked of it; its counters are those of this run. A function of problem,
-  // tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and heading.
-  Result build(solver::Problem problem, double tolerance, Pass pass, const double* y0, solver::Solver& solver);
-  // From here on the motion that is read starts with psi, phi, X_O and Y_O of y0. False where the right-hand side
-  // depends on them. It can be read until it ends, or psi or phi has turned by `most_angle`, rad.
-  bool enter(const solver::Problem& problem, const double* y0, double most_angle);
+  // Integrates the motion by DOP853, unless it is `known`: the one integrated last, but for psi, phi and place of its
+  // start. The solver has to be started anew before anything else is asked of it. The integrated motion is a function
+  // of problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
+  // heading. False where the motion is refused, or the right-hand side depends on heading, roll angle or place.
+  bool enter(const Motion& motion, bool known, solver::Solver& solver);
   void leave() { until_ = nowhere; }
 
   // (0 <= t <= until()) => y
   void read(double t, double* y) const;
   double until() const { return until_; }  // s
   bool is_entered() const { return until_ != nowhere; }
-  bool is_refused() const { return result_ == Result::refused; }
+  Result result() const { return result_; }
   bool ends() const { return result_ == Result::ended; }
   int event() const { return event_; }
   // What the integration took; zero for a wheel in steady motion.
@@ -109,13 +116,15 @@ class Orbit {
     Complex place = 0, rotation = 1;
   };
 
-  // building.cpp
+  // building.cpp: `build` integrates, `begin` places the start
+  Result build(const Motion& motion, solver::Solver& solver);
+  bool begin(const Motion& motion);
   template <class Map>
   bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;
   bool is_steady(const solver::Problem& problem, const double* y0);
   bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
-  Result follow(const solver::Problem& problem, Pass pass, const double* y0, solver::Solver& solver);
-  solver::Outcome step(const solver::Problem& problem, Pass pass, solver::Solver& solver);
+  Result follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0, solver::Solver& solver);
+  solver::Outcome step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
   bool unfold(const solver::Problem& problem, Result kind);
   bool is_mirrored(const solver::Problem& problem, double since) const;
@@ -129,24 +138,26 @@ class Orbit {
   Half half_at(double k) const;
   const Half& half_of(double t) const;
 
-  Track track_;  // from the start past T2, in its frame
-  Half start_;   // psi, phi and place of the start, from which the motion up to T2 is seen
-  double until_ = nowhere;
+  // Written by `build`: the integrated motion, in its own frame.
   Result result_ = Result::refused;
-  int event_ = 0;
+  Track track_;                                                               // from the start past T2
+  double steady_rate_[states] = {};                                           // steady motion: at the start
+  double T1_ = 0, T2_ = 0;                                                    // T2: where the motion ends, if it does
+  int event_ = 0;                                                             // by which it ends
+  double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
   solver::Counters counters_ = {};
-  double T1_ = 0, T2_ = 0;  // T2: where the motion ends, if it does
+  // By `take_half`, of the half from T1 to T2: its ends, and the terms of the sums over halves.
   double at_T1_[states] = {}, at_T2_[states] = {};
-  double steady_rate_[states] = {};           // at the start
   double psi_growth_ = 0, phi_growth_ = 0;    // rad, from T1 to T2
   double delta_ = 0;                          // that of psi less the nearest multiple of pi
   double pair_ = 0;                           // factor of the sum over pairs of halves
   Complex rotation_at_T1_, mirror_rotation_;  // exp(i psi(T1)), exp(2 i psi(T2))
   Complex displacement_;                      // from O(T1) to O(T2), seen along psi(T1)
-
-  double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
-
-  mutable Half latest_half_;  // that of the last reading, a function of its number alone
+  // By `begin`: psi, phi and place of the start, from which the motion up to T2 is seen; how far it can be read.
+  Half start_;
+  double until_ = nowhere;
+  // By `half_of`: the half read last, a function of its number alone.
+  mutable Half latest_half_;
 };
 
 }  // namespace orbit

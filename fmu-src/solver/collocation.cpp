@@ -8,6 +8,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
@@ -55,15 +57,15 @@ constexpr Table make_table() {
 }
 constexpr Table radau = make_table();
 
-// The error that one step may make, as a fraction of the tolerance of the whole solution.
-constexpr double part_of_tolerance = 0.2;
-// How far the sweeps may be from their limit, over the error of the step; the error of the polynomial against its last
-// term, which falls less fast where the turning is steep.
-constexpr double distance = 0.1, error_of_last = 0.005, error_of_steep = 0.1;
-constexpr int most_sweeps = 30, most_tries = 40;
-constexpr double longer = 1.01;  // of the stop
-// The shortest step, in roundings of time: the settling states may do in it what they will, the others hardly move.
-constexpr double roundings = 2;
+CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over the tolerance of the whole solution");
+CONSTANT(double, distance, 0.1, "1", "how far the sweeps may be from their limit, over the error of the step");
+CONSTANT(double, error_of_last, 0.005, "1", "error of the polynomial over its last term");
+CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the terms fall less fast");
+CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
+CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
+CONSTANT(double, longer, 1.01, "1", "a step that nearly reaches the stop ends there: no tiny step");
+CONSTANT(double, roundings, 2, "roundings of time",
+         "the shortest step: settling states may do in it what they will, the others hardly move");
 
 // (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
@@ -73,40 +75,39 @@ Row state_at(int j, const Step& step, double size, const double (&f)[radau_point
 
 }  // namespace
 
-// Newton's matrices for the rates at the points of the state that settles and of the steep one, and what follows that.
-struct Collocation::Newton {
-  Eigen::PartialPivLU<Square> settling, steep;
-  Row others = Row::Zero();
+// Newton's matrices for the rates at the points of the states that settle, and what follows them.
+struct Collocation::Newtons {
+  struct Newton {
+    Eigen::PartialPivLU<Square> matrix;
+    Row others = Row::Zero();
+  } steep, turning;
 };
 
-// (rates at the points) => Newton's matrices.
-Collocation::Newton Collocation::prepare(const Problem& problem, const Step& step) const {
+// (rates at the points) => Newton's matrices
+void Collocation::prepare(const Problem& problem, const Step& step, Newtons* newtons) const {
   const Eigen::Map<const Square> integral(&radau.integral[0][0]);
   const Eigen::Map<const Rates> f(&f_[0][0]);
   const auto along = [&](int i) -> Column { return (size_ * integral * f.col(i)).array() + step.y_start[i]; };
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
-  Newton newton;
-  Column slopes;
-  if (const auto& steep = problem.steep) {
-    const Column values = along(steep->state);
-    steep->slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
-                  newton.others.data());
-    newton.steep.compute(size_ * slopes.asDiagonal() * integral - Square::Identity());
-  }
-  if (const auto& settling = problem.settling) {
-    const Column values = along(settling->state);
-    settling->slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data());
+  const auto linearise = [&](const Settling& settling) {
+    Newtons::Newton newton;
+    Column slopes;
+    const Column values = along(settling.state);
+    settling.slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
+                    newton.others.data());
     Square matrix = size_ * slopes.asDiagonal() * integral;
-    matrix.diagonal() -= along(settling->speed);
-    newton.settling.compute(matrix);
-  }
-  return newton;
+    matrix.diagonal() -= settling.speed == Settling::none ? Column::Ones() : along(settling.speed);
+    newton.matrix.compute(matrix);
+    return newton;
+  };
+  if (problem.steep) newtons->steep = linearise(*problem.steep);
+  if (problem.turning) newtons->turning = linearise(*problem.turning);
 }
 
 // (rates at the points) => better rates; returns the change of the states in units of the weights, infinite where rates
-// are not finite. f(y), fixed-point iteration, is corrected by Newton's method: of the steep state, and with it all
-// that follows its rate, and of the state that settles.
-double Collocation::sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters,
+// are not finite. f(y), fixed-point iteration, is corrected by Newton's method: of each state that settles, and with it
+// all that follows its rate.
+double Collocation::sweep(const Problem& problem, const double* weights, const Newtons& newtons, Counters* counters,
                           Step* step) {
   Eigen::Map<Rates> before(&f_[0][0]);
   Rates f = Rates::Zero();
@@ -118,19 +119,18 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     ++counters->rhs;
     if (std::isnan(margin)) return INFINITY;
     step->least_margin = j == 0 ? margin : std::fmin(step->least_margin, margin);
-    if (problem.settling) speeds[j] = y[problem.settling->speed];
+    if (problem.turning) speeds[j] = y[problem.turning->speed];
   }
-  if (problem.steep) {
-    const int state = problem.steep->state;
-    const Column settled = before.col(state) - newton.steep.solve(f.col(state) - before.col(state));
+  const auto settle = [&](const Settling& settling, const Newtons::Newton& newton) {
+    const int state = settling.state;
+    Column residual = f.col(state) - before.col(state);
+    if (settling.speed != Settling::none) residual = speeds.cwiseProduct(residual);
+    const Column settled = before.col(state) - newton.matrix.solve(residual);
     f += (settled - f.col(state)) * newton.others;
     f.col(state) = settled;
-  }
-  if (problem.settling) {
-    const int state = problem.settling->state;
-    const Column turning = speeds.cwiseProduct(f.col(state) - before.col(state));
-    f.col(state) = before.col(state) - newton.settling.solve(turning);
-  }
+  };
+  if (problem.steep) settle(*problem.steep, newtons.steep);
+  if (problem.turning) settle(*problem.turning, newtons.turning);
   const Rates change = size_ * (f - before);
   double largest = 0;
   for (int j = 0; j < radau_points; ++j)
@@ -145,7 +145,7 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
   if (last.degree != radau_points) {
     ++counters->rhs;
     if (std::isnan(problem.derivative(problem.owner, step->start, step->y_start, f_[0]))) return false;
-    if (const auto& s = problem.settling)
+    if (const auto& s = problem.turning)
       if (!(std::fabs(size_ * f_[0][s->speed]) < step->y_start[s->speed])) f_[0][s->state] = 0;
     for (int j = 1; j < radau_points; ++j) std::copy_n(f_[0], max_states, f_[j]);
     return true;
@@ -169,7 +169,8 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 //   the change is not below one and does not fall, or is not finite: they do not converge.
 double Collocation::try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters,
                              Step* step) {
-  Newton newton = prepare(problem, *step);
+  Newtons newtons;
+  prepare(problem, *step, &newtons);
   double change = INFINITY;
   ++counters->jacobians;
   const double largest_last = predicted ? INFINITY : 1;
@@ -177,8 +178,8 @@ double Collocation::try_size(const Problem& problem, const double* weights, bool
   for (int sweeps = 0; !converged; ++sweeps) {
     const double before = change;
     // A steep turning bends between two sweeps.
-    if (sweeps > 0 && problem.steep) newton = prepare(problem, *step);
-    change = sweep(problem, weights, newton, counters, step);
+    if (sweeps > 0 && problem.steep) prepare(problem, *step, &newtons);
+    change = sweep(problem, weights, newtons, counters, step);
     const bool falls = sweeps < most_sweeps && change < before;
     if (!falls && !(change < 1)) return INFINITY;
     converged = !falls || change < distance ||
@@ -202,11 +203,13 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
 // (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend on the size
 // of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
-  const double fitting = 0.8 / eighth_root(std::fmax(error, 1e-6));
+  CONSTANT(double, safety, 0.8, "1", "a step is sized for an error of safety^8, so that few are refused");
+  CONSTANT(double, least_error, 1e-6, "1", "smaller errors are mostly rounding");
+  const double fitting = safety / eighth_root(std::fmax(error, least_error));
   const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
   if (!known_ || !stops || next < liked_) liked_ = next;
-  if (!known_ || !problem.settling) return;
-  const int speed = problem.settling->speed;
+  if (!known_ || !problem.turning) return;
+  const int speed = problem.turning->speed;
   liked_ *= std::clamp(step.y_end[speed] / step.y_start[speed], 0.4, 1.0);
 }
 
@@ -237,7 +240,7 @@ bool Collocation::advance(const Problem& problem, double stop, Counters* counter
     }
     const bool is_shortest = size_ <= shortest;
     if (is_shortest && problem.steep) weights[problem.steep->state] = 0;
-    if (is_shortest && problem.settling) weights[problem.settling->state] = 0;
+    if (is_shortest && problem.turning) weights[problem.turning->state] = 0;
     const double error = try_size(problem, weights, last.degree == radau_points, counters, step);
     known_ = error <= 1;
     if (known_) Eigen::Map<Row>(step->y_end) = state_at(radau_points - 1, *step, size_, f_);

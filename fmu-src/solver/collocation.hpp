@@ -1,5 +1,5 @@
 // Collocation at the six points of Radau IIA, order 11: for a problem in which one state or two settle, however fast
-// (Problem::settling and steep). The error of the polynomial is kept below the tolerance; that at the end of the step,
+// (Problem::steep and turning). The error of the polynomial is kept below the tolerance; that at the end of the step,
 // of order 11, is far smaller.
 //
 // From step to step it keeps the wanted size of the next step, and the rates of the last one, which predict the next.
@@ -29,9 +29,9 @@ class Collocation final : public Engine {
   double try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters, Step* step);
   bool size_up(const Problem& problem, double stop, double shortest, Step* step);
   void like(const Problem& problem, double error, int attempts, bool stops, const Step& step);
-  struct Newton;
-  Newton prepare(const Problem& problem, const Step& step) const;
-  double sweep(const Problem& problem, const double* weights, const Newton& newton, Counters* counters, Step* step);
+  struct Newtons;
+  void prepare(const Problem& problem, const Step& step, Newtons* newtons) const;
+  double sweep(const Problem& problem, const double* weights, const Newtons& newtons, Counters* counters, Step* step);
 
   double liked_ = 0, size_ = 0;              // size of the next step and of the last, s
   bool known_ = false;                       // the rates are those of the last step

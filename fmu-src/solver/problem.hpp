@@ -27,18 +27,13 @@ struct Watched {
   int state = -1;  // the only one that `value` reads; below zero: it reads all
 };
 
-// A state whose rate is turning / y[speed] + ...: where the speed is small, it settles at once where the turning
-// vanishes. (t, y, values of the state) => slopes of the turning by the state.
+// A state that settles at once where its rate vanishes, times y[speed] if there is a speed: the rate itself falls
+// steeply with the state, or it is turning / y[speed] + ... and the speed may be small.
+// (t, y, values of the state) => slopes of the rate, or of the turning, by the state; `others`, zeros before: by how
+// much the rate of each other state changes with this one's.
 struct Settling {
+  static constexpr int none = -1;
   int state, speed;
-  void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes);
-};
-
-// A state whose rate falls steeply with it: it settles at once where that vanishes.
-// (t, y, values of the state) => slopes of its rate by the state, and by how much the rate of each state changes with
-// its rate.
-struct Steep {
-  int state;
   void (*slopes)(void* owner, double t, const double* y, std::span<const double> values, double* slopes,
                  double* others);
 };
@@ -63,10 +58,10 @@ struct Problem {
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // quick margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
-  std::optional<Settling> settling;  // for collocation alone
-  std::optional<Steep> steep;        // the same
-  double first_step = INFINITY;      // s, > 0: limit of collocation's, whose points leave out the start
-  double share = 1;                  // of the error that a step may otherwise make
+  // For collocation alone.
+  std::optional<Settling> steep, turning;  // without a speed; with one
+  double first_step = INFINITY;            // s, > 0: limit of the first step, since no point is at the start
+  double share = 1;                        // of the error that a step may otherwise make
 
   // At most max_watched of them.
   void watch(const Watched& function) { watched[watched_count++] = function; }

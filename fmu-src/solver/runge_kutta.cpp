@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "constant.hpp"
 #include "dormand_prince.hpp"
 
 namespace solver {
@@ -17,17 +18,12 @@ namespace {
 
 using dormand_prince::stages;
 
-// The error that one step may make, as a fraction of the tolerance of the whole solution. Tuned on the wheel's scenes.
-constexpr double share_of_tolerance = 0.03;
-
-constexpr int most_attempts = 40;
-
-// A step is sized for an error of safety^8.
-constexpr double safety = 0.9;
-
-// A step that would reach the stop if it were longer by this factor is made longer and ends there. This avoids a tiny
-// step, and adds at most 8 % to the step's error.
-constexpr double stretch = 1.01;
+CONSTANT(double, share_of_tolerance, 0.03, "1",
+         "error of a step over the tolerance of the whole solution, tuned on the wheel's scenes");
+CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
+CONSTANT(double, safety, 0.9, "1", "a step is sized for an error of safety^8, so that few are refused");
+CONSTANT(double, stretch, 1.01, "1", "a step that nearly reaches the stop ends there: no tiny step, 8 % more error");
+CONSTANT(double, least_error, 1e-6, "1", "smaller errors, as after a step cut short, are mostly rounding");
 
 // The stages that enter a row of the table.
 template <const auto& matrix, int row>
@@ -127,7 +123,7 @@ struct RungeKutta::Work {
   // the same factor once more (Gustafsson, ACM TOMS 20 (1994) 496: predictive step control). On the wheel hardly any
   // step is then rejected.
   double next_size(double found) {
-    const double error = std::fmax(found, 1e-6);  // smaller errors, as after a step cut short, are mostly rounding
+    const double error = std::fmax(found, least_error);
     const double before = engine.last_error_;
     const double trend = before > 0 ? (h / engine.size_) * eighth_root(before / error) : 1;
     engine.last_error_ = error;

@@ -1,17 +1,34 @@
 // A change of sign between the ends of a step is not enough: a function may dip below zero and come back within one
-// step (a held wheel is released for an instant, a wheel leaves the ground for an instant). The search trusts a
-// parabola through three samples where g has a simple shape, halves the interval where it has not, and evaluates g at
-// most a fixed number of times.
+// step (a held wheel is released for an instant, a wheel leaves the ground for an instant). Most steps are far from any
+// event, and the dense output costs three evaluations, so Solver::look_for_events asks in three stages.
+//
+// 1. By numbers that are known anyway. A quick function comes with the rates, and Step::least_margin is the least of
+// all
+//    quick values at the stages of the step: where it is above Problem::near, none is looked at, unless one is near at
+//    an extreme of an input (Solver::comes_near). Of the other functions, each is evaluated at the end of the step; its
+//    value at the start is kept from the step before (Solver::values_), and the method leaves a state inside the step
+//    (Step::inside_at), which gives a third sample: a parabola through the three, well above zero, is enough
+//    (Solver::is_far), if no input has an extreme there.
+// 2. On the dense output, find_first_fall goes through the pieces between the extremes of inputs, in which g has a
+// simple
+//    shape, and halves them while the parabola through three samples does not show that g stays above zero
+//    (stays_above), a fixed number of times at most.
+// 3. Between a sample at or above zero and one below it, fall_through finds the instant.
 #include "search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
-// Halvings of a step, and evaluations in the search for a value below zero between two extremes.
-constexpr int most_halvings = 7, most_samples = 48;
+CONSTANT(int, most_halvings, 7, "halvings", "the narrowest dip that is looked for lasts 1/128 of a step");
+CONSTANT(int, most_samples, 48, "evaluations", "between two extremes: a noisy function costs no more than four steps");
+// How far g may lie below the parabola through three samples.
+CONSTANT(double, of_bend, 0.25, "1", "of its bend: what a fourth sample of smooth functions shows");
+CONSTANT(double, of_range, 0.1, "1", "of its range: the same for functions without a bend");
 
 // g = lo.g + x (slope + bend (x - middle)), x = (t - lo.t) / (hi.t - lo.t), through three samples.
 struct Parabola {
@@ -34,14 +51,13 @@ Sample Search::sample(double t) const {
   return sample(t, y);
 }
 
-// How far g may lie below the parabola: a quarter of its bend and a tenth of its range.
 bool Search::stays_above(Sample lo, Sample mid, Sample hi) {
   double lowest = std::fmin(mid.g, std::fmin(lo.g, hi.g));
   if (!(lowest > 0)) return lowest == 0 && lo.g == 0 && mid.g == 0 && hi.g == 0;
   const Parabola p(lo, mid, hi);
   const double x = p.lowest_at(), range = std::fmax(mid.g, std::fmax(lo.g, hi.g)) - lowest;
   if (x > 0 && x < 1) lowest = std::fmin(lowest, p.value(lo.g, x));
-  return lowest > 0.25 * std::fabs(p.bend) + 0.1 * range;
+  return lowest > of_bend * std::fabs(p.bend) + of_range * range;
 }
 
 // (three samples, lo.g >= 0) => the first one below zero that can be found, and the one before it. An interval is left

@@ -4,16 +4,20 @@
 
 #include <algorithm>
 
+#include "constant.hpp"
+
 namespace solver {
 namespace {
 
 // (step, instant of an event in it) => latest end of the step after the event, s. An event right behind the start of
 // its step, which most often began at another event, shows that the step was too long for the motion between the two: a
-// thousandth of it is next.
+// small part of it is next.
 double first_stop_after(const Step& step, double t) {
+  CONSTANT(double, behind, 1e-6, "of the step", "an event nearer to the start of its step is right behind it");
+  CONSTANT(double, part, 1e-3, "of the step", "long enough to grow again within three steps");
   const double length = step.end - step.start;
-  if (!(t - step.start < 1e-6 * length)) return never;
-  return t + std::fmax(1e-3 * length, 0.5 * rounding_at(t));
+  if (!(t - step.start < behind * length)) return never;
+  return t + std::fmax(part * length, 0.5 * rounding_at(t));
 }
 
 }  // namespace
@@ -109,7 +113,7 @@ void Solver::look_for_events(double from) {
     } else {
       hi = search.sample(step_.end, step_.y_end);
       values_[i] = hi.g;
-      if (extremes.empty() && stays_above(search, lo, hi)) continue;
+      if (extremes.empty() && is_far(search, lo, hi)) continue;
       expand();
     }
     if (hi.t != known_until_) hi = search.sample(known_until_);
@@ -131,7 +135,7 @@ bool Solver::comes_near(const Search& search) {
 }
 
 // Most steps are far from an event, which a value inside the step that is known anyway is enough to show.
-bool Solver::stays_above(const Search& search, Sample lo, Sample hi) const {
+bool Solver::is_far(const Search& search, Sample lo, Sample hi) const {
   if (!(step_.inside_at > 0) || lo.t != step_.start) return false;
   const double t = step_.start + step_.inside_at * (step_.end - step_.start);
   return Search::stays_above(lo, search.sample(t, step_.y_inside), hi);

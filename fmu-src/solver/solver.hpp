@@ -78,7 +78,7 @@ class Solver {
   void expand() const;
   void look_for_events(double from);
   bool comes_near(const Search& search);
-  bool stays_above(const Search& search, Sample lo, Sample hi) const;
+  bool is_far(const Search& search, Sample lo, Sample hi) const;
   void visit(support::Archive& archive);
 
   Problem problem_ = {};

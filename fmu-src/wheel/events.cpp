@@ -60,7 +60,7 @@ bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 
 // (t, y) => slip above the least; what is left of it at its end falls at once
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  constexpr double near = 1e3;
+  CONSTANT(double, near, 1e3, "least slips", "farther from its end a slip cannot fall to it before the next sample");
   double least = least_slip(setup, t);
   if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
     const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
@@ -147,7 +147,7 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 }  // namespace
 
 // Where the ground begins to pull or to press, the motion goes on as it was if there is no friction.
-Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
   if (row.observed) now.cross(row.event);
   const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();

@@ -2,14 +2,15 @@
 // follows. Stepping, the unfolded wheel, model exchange and snapshots work from this table (events.cpp).
 #pragma once
 
+#include "constant.hpp"
 #include "run.hpp"
 
 namespace wheel {
 
 using solver::Consequence;
 
-// omega_z over the scale of rates: beyond zero by less, a spin is the error of the solver that brought it there.
-inline constexpr double spin_error = 1e-3;
+CONSTANT(double, spin_error, 1e-3, "of the scale of rates",
+         "beyond zero by less, a spin is the error of the solver that brought it there");
 
 struct EventRow {
   Event event;
@@ -42,7 +43,7 @@ inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends 
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }
 
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
-Consequence pass(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
 
 // (row, t, y) => its margin
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
@@ -12,13 +13,11 @@
 namespace wheel {
 namespace {
 
-// Added to every indicator: one that rests at zero after an event must not count as a second one. At 1e-6 the instants
-// would be wrong by as much.
-constexpr double distance = 1e-12;
-
-// An event that lies ahead by less than this, in units of the time scale, has happened: some solvers stop a little
-// before the sign changes, and would stop there again and again.
-constexpr double soon = 1e-7;
+CONSTANT(double, distance, 1e-12, "1",
+         "added to every indicator: one that rests at zero after an event must not count as a second one; at 1e-6 the "
+         "instants would be wrong by as much");
+CONSTANT(double, soon, 1e-7, "time scales",
+         "an event so close ahead has happened: some solvers stop before the sign changes, again and again");
 
 // In the order of x: its variables, and the states of y to which they belong.
 constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
@@ -82,7 +81,7 @@ Event ending_at(const Setup& setup, const Run& run) {
 void decide_friction(const Setup& setup, Run& run, bool led) {
   const EventRow& row = row_of(Event::spin_changes);
   if (led && has_occurred(row, setup, run))
-    pass(row, setup, run.t, run.y, run.in_force);
+    follow_event(row, setup, run.t, run.y, run.in_force);
   else
     decide_law(setup, run.t, run.y, run.in_force);
 }
@@ -127,10 +126,10 @@ int place_in_x(unsigned variable) {
 
 int place_in_y(int in_x) { return states_of_y[in_x]; }
 
-void apply_at_once(Wheel& w) {
+void act_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
   const InForce before = now;
-  apply_loads(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
+  set_road_and_inputs(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs, now);
   w.demand.news = News::none;
   if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);

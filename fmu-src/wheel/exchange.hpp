@@ -16,7 +16,7 @@ int place_in_y(int in_x);
 
 // What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
 // for another law at once. Writes run.in_force, run.transitions and demand.news.
-void apply_at_once(Wheel& wheel);
+void act_at_once(Wheel& wheel);
 
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins
 // are those of the flat wheel, which are finite. Rates, margins and events write run.counted.

@@ -48,14 +48,14 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 
 }  // namespace
 
-void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
-  apply_loads(setup, road_asked(demand), t, demand.inputs, now);
+void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
+  set_road_and_inputs(setup, road_asked(demand), t, demand.inputs, now);
   if (setup.steered()) set_guide_rates(setup, demand, now.scene, false, y);
   now.layered = false;
   decide_contact(setup, t, y, now);
 }
 
-void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
+void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
   now.road = road;
   now.scene.wheel = setup.scene.wheel;
   now.scene.wheel.s = road.s;
@@ -133,13 +133,14 @@ double first_direction(const WheelScene& scene, const double* y) {
 }
 
 double least_slip(const Setup& setup, double t) {
-  constexpr double part = 0.01, roundings = 128;
+  CONSTANT(double, part, 0.01, "of the tolerance", "where a slide ends: a small part of the error that is allowed");
+  CONSTANT(double, roundings, 128, "roundings of time", "the digits of an instant that a falling slip needs");
   return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.time_scale);
 }
 
-// Rounding is relative to mu_max N, and that of a tangential force of zero.
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  constexpr double rounding = 1e-12, rounding_of_zero = 1e-15;
+  CONSTANT(double, rounding, 1e-12, "1", "of mu_max N");
+  CONSTANT(double, rounding_of_zero, 1e-15, "weights", "of a tangential force of zero");
   const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
   const double* lambda = dynamics.lambda;
   const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
@@ -149,10 +150,11 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
 }
 
 Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
-  constexpr double rounding_of_capacity = 1e-12, rounding_of_tau = 1e-13;
+  CONSTANT(double, rounding_of_capacity, 1e-12, "1", "where rounding alone decides, the wheel stays held");
+  CONSTANT(double, rounding_of_tau, 1e-13, "weight times length", "the same without a capacity");
   scene.friction = held;
   const WheelDynamics dynamics = dynamics_of(setup, scene, y);
-  const double capacity = scene.wheel.s * std::max(dynamics.lambda[2], 0.0) + scene.load.brake;
+  const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};
 }
@@ -172,7 +174,7 @@ double decay_of(const Setup& setup, const WheelScene& scene, const double* y) {
   const WheelParameters& wheel = scene.wheel;
   const double inertia = wheel.J_z + wheel.m * setup.length * setup.length;
   const double N = std::max(setup.weight, rates_of(setup, scene, y).N);
-  return (wheel.s * N + scene.load.brake) / (setup.omega_s * inertia);
+  return wheel_axle_capacity(wheel.s, N, scene.load.brake) / (setup.omega_s * inertia);
 }
 
 // To be compared with the time scale; below the limit DOP853 alone is faster through the layer.

@@ -2,16 +2,17 @@
 // the wheel rolls or slides after Coulomb. Pure functions of setup, load and state.
 #pragma once
 
+#include "constant.hpp"
 #include "run.hpp"
 
 namespace wheel {
 
 // (demand, t, y) => in_force, y: what the caller has set is in force from t on, and with it the contact and the law of
 // friction. In y it writes the slip, and what a jump of the carrier's rates changes.
-void apply(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
+void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // (road, t, inputs) => in_force: both, and what follows from them alone. A mu_max set below mu_slide counts for both.
-void apply_loads(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
+void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
 
 // (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
 // it had always turned so.
@@ -57,7 +58,8 @@ Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 
 // rad/s, half the width of the layer of a stiff regularized law: outside of it the law is the exact one to the last
 // digit.
-inline double layer_edge(const Setup& setup) { return 20 * setup.omega_s; }
+CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");
+inline double layer_edge(const Setup& setup) { return edge * setup.omega_s; }
 
 // A regularized law that is steep is solved by its layer and, around it, by the exact law, as it is wherever the wheel
 // slides. Once solved so, it stays so until an input or the contact changes.

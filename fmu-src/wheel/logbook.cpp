@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 
@@ -21,7 +22,7 @@ Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
   const EventRow& row = row_of(event);
   const InForce before = run.in_force;
-  const Consequence consequence = pass(row, wheel.setup, run.t, run.y, run.in_force);
+  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) observe(wheel, event, run.t);
   log_changes(wheel, before, event);
   return consequence;
@@ -56,7 +57,8 @@ void log_changes(Wheel& wheel, const InForce& before, Event by) {
 }
 
 void look_at_grip(Wheel& wheel, double t) {
-  constexpr double looks = 16, dry_road = 1;
+  CONSTANT(double, looks, 16, "in a time scale", "often enough to see a swing, so seldom that it costs nothing");
+  CONSTANT(double, dry_road, 1, "1", "the friction coefficient of a good tyre on a dry road");
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
   if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;

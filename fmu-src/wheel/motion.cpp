@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
@@ -25,14 +26,11 @@ namespace {
 
 using solver::Outcome;
 
-// The most work that one call may do, in internal steps, however long its communication step is: some seconds of
-// computing.
-constexpr long long most_work = 1000000;
-// The work of passing an event, in internal steps: the search for it, a new start, the short steps after it.
-constexpr long long work_per_event = 20;
-// Evaluations that count as one internal step, and the work of one of the multibody form, whose system is larger.
-constexpr unsigned evaluations_per_step = 16;
-constexpr long long work_per_multibody_step = 8;
+CONSTANT(long long, most_work, 1000000, "internal steps",
+         "that one call may do, however long its communication step is: some seconds of computing");
+CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a new start, the short steps after it");
+CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
+CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");
 
 bool is_known(const Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
@@ -68,7 +66,7 @@ Outcome apply_demand(Wheel& w) {
   if (!changed) return Outcome::stepped;
   const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
-  apply(w.setup, w.demand, run.t, run.y, run.in_force);
+  enforce(w.setup, w.demand, run.t, run.y, run.in_force);
   log_changes(w, before);
   if (run.phase == Phase::at_start) return Outcome::stepped;
   const double interval = run.t - run.last_change;
@@ -98,16 +96,14 @@ bool enter_orbit(Wheel& w) {
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
-  const solver::Problem problem = problem_of(w);
-  if (w.orbit_shape != asked || orbit.is_refused()) {
-    const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-    orbit.build(problem, w.demand.tolerance, pass_on_orbit, w.setup.start, w.solver);
-    w.run.in_force = at_start;
-    w.orbit_shape = asked;
-  }
-  if (orbit.is_refused() || !orbit.enter(problem, w.setup.start, largest_angle)) return false;
-  w.run.counted = orbit.counters();
-  return true;
+  const bool known = w.orbit_shape == asked;
+  const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
+  const orbit::Motion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
+  const bool entered = orbit.enter(motion, known, w.solver);
+  w.run.in_force = at_start;
+  w.orbit_shape = asked;
+  if (entered) w.run.counted = orbit.counters();
+  return entered;
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
@@ -145,7 +141,7 @@ double stop_of(const Wheel& w, double t) {
 // Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): of a small slip time has too few digits for the
 // rest.
 bool is_about_to_jam(const Wheel& w) {
-  constexpr double little_room = 1e-2;
+  CONSTANT(double, little_room, 1e-2, "1", "WheelSlip.room, below which a step that fails has met the jam");
   if (!w.run.in_force.slides()) return false;
   double y[max_states];
   w.solver.read(w.solver.known_until(), y);

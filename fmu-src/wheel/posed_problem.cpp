@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constant.hpp"
 #include "events.hpp"
 #include "law.hpp"
 
@@ -49,7 +50,9 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const InForce& now = wheel_of(owner).run.in_force;
   const int spin = WHEEL_OMEGA_3;
   const double theta = y[WHEEL_THETA];
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
+  CONSTANT(double, width, 10, "omega_s over sqrt(tolerance)",
+           "error of the spin inside a regularized law, second order");
   const bool multibody = setup.formulation == &wheel_multibody;
   const double slow = share * setup.tolerance;
   const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
@@ -59,7 +62,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   scales_at(setup, y[spin], scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
-  const double part = 10 * std::sqrt(tolerance);
+  const double part = width * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
   weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
 }
@@ -70,7 +73,7 @@ double margin(void* owner, int event, double t, const double* y) {
 }
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
-void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes) {
+void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
   const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
@@ -112,15 +115,17 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
   if (now.inputs.varies) problem.extremes = extremes;
-  problem.near = 0.1;  // of the weight, or rad from lying flat
+  CONSTANT(double, near, 0.1, "weights, or rad from lying flat", "what N or theta may do between two stages of a step");
+  CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
+  problem.near = near;
   problem.longest_step = setup.longest_step;
   const int spin = WHEEL_OMEGA_3;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, slopes_of_spin};
-  if (now.in_layer()) {  // an eighth of it
+  if (now.scene.friction.kind == WHEEL_REGULARIZED) problem.steep = {spin, solver::Settling::none, slopes_of_spin};
+  if (now.in_layer()) {
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[spin];
-    problem.first_step = 0.25 * layer_edge(setup) / std::fabs(rate);
+    problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.settling = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
+  if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
       const int state = row.state ? row.state(setup, now) : -1;
@@ -129,13 +134,13 @@ solver::Problem problem_of(Wheel& wheel) {
   return problem;
 }
 
-Consequence pass_on_orbit(void* owner, int event, double t, double* y) {
+Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
   const EventRow& row = row_of(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
   double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
-  return pass(row, wheel.setup, t, state, wheel.run.in_force);
+  return follow_event(row, wheel.setup, t, state, wheel.run.in_force);
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {

@@ -10,7 +10,7 @@ namespace wheel {
 // wheel stays where it is as long as the problem is in use.
 solver::Problem problem_of(Wheel& wheel);
 // (event, t, y) => what follows for the motion alone: what is in force is changed, nothing is counted or logged.
-solver::Consequence pass_on_orbit(void* wheel, int event, double t, double* y);
+solver::Consequence follow_on_orbit(void* wheel, int event, double t, double* y);
 // (what is in force) => engine of a motion that is not unfolded: collocation where the direction of a slip or omega_z
 // settles at once.
 solver::Method method_of(const Setup& setup, const InForce& in_force);

@@ -60,8 +60,8 @@ inline Road road_asked(const Demand& demand) {
 // What acts on the wheel.
 struct InForce {
   Road road = {};  // as it was asked for; what of it acts is in `scene`, except mu_max
-  // Wheel, mu_slide and `guided` follow from road and setup (apply_loads), the load is that at the origin of the
-  // inputs, `ground` follows from `below`. Without a law until one is decided.
+  // Wheel, mu_slide and `guided` follow from road and setup (set_road_and_inputs), the load is that at the origin of
+  // the inputs, `ground` follows from `below`. Without a law until one is decided.
   WheelScene scene = {};
   Inputs inputs;
   bool layered = false;          // a regularized law so steep that it is the exact one but in its layer

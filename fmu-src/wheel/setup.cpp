@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "constant.hpp"
+
 namespace wheel {
 namespace {
 
@@ -21,13 +23,15 @@ double power_of_two_below(double x) {
 // The time scale is sqrt(length / g); without a weight that matters it is the inverse of the initial rate. The slope
 // changes no scale: it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
+  CONSTANT(double, longest, 0.6, "time scales",
+           "the longest step: at an unstable rest the error estimate is zero, and steps would grow without limit");
   const WheelParameters& wheel = setup.scene.wheel;
   const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
   const bool matters = gravity > 1e-30 * length * rate * rate;
   setup.length = length;
   setup.time_scale = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
-  setup.longest_step = 0.6 * setup.time_scale;
+  setup.longest_step = longest * setup.time_scale;
   setup.weight = wheel.m * length / (setup.time_scale * setup.time_scale);
   setup.rate_scale = power_of_two_below(1 / setup.time_scale);
   setup.moment_scale = power_of_two_below(setup.weight * length);
@@ -38,12 +42,16 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
 // The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the initial tilting,
 // whichever is larger.
 void set_error_scales(Setup& setup) {
+  CONSTANT(double, slip, 0.15, "lengths over the time scale", "error of a slip that counts as one of 1 rad");
+  CONSTANT(double, loose, 3, "rad, or lengths",
+           "error of heading, roll angle and place that counts as one of 1 rad in theta");
   const double length = setup.length, slowest = 1 / setup.time_scale;
   const double rate = std::max(slowest, setup.tilting);
-  setup.slip_scale = 0.15 * slowest * length;
+  setup.slip_scale = slip * slowest * length;
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
-  const double scales[max_states] = {1, rate, rate, rate, 3, 3, 3 * length, 3 * length, setup.slip_scale, 1, 1, 1};
+  const double scales[max_states] = {
+      1, rate, rate, rate, loose, loose, loose * length, loose * length, setup.slip_scale, 1, 1, 1};
   std::copy_n(scales, max_states, setup.slow_scales);
 }
 
@@ -159,7 +167,7 @@ void scales_at(const Setup& setup, double omega_z, double* out) {
 }
 
 double share_at(const Setup& setup, double omega_z) {
-  constexpr double many = 12;
+  CONSTANT(double, many, 12, "rad", "turning in a time scale, above which errors add up over the turns");
   const double spin = std::fabs(omega_z), slowest = 1 / setup.time_scale;
   return spin > many * slowest ? many * slowest / spin : 1;
 }

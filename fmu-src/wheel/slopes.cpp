@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "constant.hpp"
 #include "exchange.hpp"
 #include "law.hpp"
 
@@ -29,7 +30,7 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
 
 // The derivatives of the variables that are asked for, and behind them, where one needs it, those of what acts: of
 // several steps, for each that with the least error.
-struct Pass {
+struct Quotients {
   static constexpr std::size_t computed = variable_count - stored_count,
                                count = computed + sizeof(Acting) / sizeof(double);
   using Numbers = std::array<double, count>;
@@ -37,7 +38,7 @@ struct Pass {
   Numbers centre = {}, slope = {}, error;
   std::array<bool, count> exact = {};  // smaller steps are of no use, whatever else is asked for
 
-  Pass() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
+  Quotients() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   void ask(unsigned variable) {
     asked[variable - stored_count] = true;
@@ -84,7 +85,7 @@ struct Pass {
 
   // Marks the derivatives that are exact; true if all are. scale: of the variable.
   bool settle(double scale) {
-    constexpr double relative = 1e-11;
+    CONSTANT(double, relative, 1e-11, "1", "error of a derivative that counts as exact");
     for (std::size_t i = 0; i < count; ++i)
       exact[i] |= error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale);
     return std::all_of(exact.begin(), exact.end(), [](bool of) { return of; });
@@ -96,7 +97,9 @@ struct Pass {
   //   none of the first steps is possible: false.
   template <class MoveTo>
   bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
-    constexpr double finest = std::numeric_limits<double>::epsilon(), finest_first = 1e-10;
+    constexpr double finest = std::numeric_limits<double>::epsilon();
+    CONSTANT(double, finest_first, 1e-10, "of the scale",
+             "where no larger step is possible, the quantity is at its limit");
     bool done = false;
     double part = 1e-3;
     while (part > (done ? finest : finest_first) && !settle(scale)) {
@@ -122,7 +125,7 @@ struct Pass {
 // In the initial state, or by a rate of the carrier, which jumps; an integer or boolean parameter moves nothing. The
 // step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is relative to the
 // parameter or to 1, whichever is larger.
-bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
+bool take_by_parameter(Wheel& w, unsigned parameter, Quotients& quotients) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
                      parameter == variable::slope_direction;  // the same after a whole turn
@@ -136,8 +139,8 @@ bool take_by_parameter(Wheel& w, unsigned parameter, Pass& pass) {
     return exists;
   };
   const News news = std::exchange(w.demand.news, News::set);
-  const bool done = pass.refine(x, scale, now, move_to);
-  pass.complete();
+  const bool done = quotients.refine(x, scale, now, move_to);
+  quotients.complete();
   if (has_begun(w.run.phase)) w.demand.news = news;
   return move_to(set) && done;
 }
@@ -169,7 +172,7 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
 
 // (an input or a state) => derivatives by it; the law and the sign of N are kept. Where a slide begins here, the loads
 // decide the direction of the slip.
-bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
+bool take_at_instant(Wheel& w, unsigned known, Quotients& quotients) {
   const Setup& setup = w.setup;
   Reading now(w);
   if (known == variable::M_brake) put_brake_in_use(w, now);
@@ -188,8 +191,8 @@ bool take_at_instant(Wheel& w, unsigned known, Pass& pass) {
     if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
     return true;
   };
-  begins ? pass.refine(place, size, now, move_to) : pass.take(stencils[0], place, 1e-3 * size, now, move_to);
-  pass.complete();
+  begins ? quotients.refine(place, size, now, move_to) : quotients.take(stencils[0], place, 1e-3 * size, now, move_to);
+  quotients.complete();
   return true;
 }
 
@@ -204,7 +207,7 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 
 // In a small part of the time in which the wheel itself moves. kappa of a regularized law is kept: its rate can be
 // large, and acts as a moment about the axle.
-void take_along_motion(Wheel& w, Pass& pass) {
+void take_along_motion(Wheel& w, Quotients& quotients) {
   const Setup& setup = w.setup;
   Reading start(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
@@ -233,29 +236,29 @@ void take_along_motion(Wheel& w, Pass& pass) {
     return true;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  pass.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to);
-  pass.complete(tau_rate);
+  quotients.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to);
+  quotients.complete(tau_rate);
 }
 
 }  // namespace
 
-void read_rates(Wheel& w, const unsigned* outputs, std::size_t count, double* out) {
-  Pass pass;
+void read_rates(Wheel& w, Listed outputs, std::size_t count, double* out) {
+  Quotients quotients;
   Reading reading(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k)
     if (!row_of(outputs[k]).read_rate) {
-      pass.ask(outputs[k]);
+      quotients.ask(outputs[k]);
       missing = true;
     }
-  if (missing) take_along_motion(w, pass);
+  if (missing) take_along_motion(w, quotients);
   for (std::size_t k = 0; k < count; ++k) {
     const Row& row = row_of(outputs[k]);
-    out[k] = row.read_rate ? row.read_rate(reading) : pass.of(outputs[k]);
+    out[k] = row.read_rate ? row.read_rate(reading) : quotients.of(outputs[k]);
   }
 }
 
-bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns, std::size_t count, double* sums) {
+bool add_slopes(Wheel& w, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums) {
   w.reading.reset();
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
@@ -266,10 +269,11 @@ bool add_slopes(Wheel& w, unsigned known, double seed, const unsigned* unknowns,
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   const bool guides = is_guide_rate(known);
   if (guides && !w.setup.steered()) return true;
-  Pass pass;
-  for (std::size_t k = 0; k < count; ++k) pass.ask(unknowns[k]);
-  if (!(parameter || guides ? take_by_parameter(w, known, pass) : take_at_instant(w, known, pass))) return false;
-  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * pass.of(unknowns[k]);
+  Quotients quotients;
+  for (std::size_t k = 0; k < count; ++k) quotients.ask(unknowns[k]);
+  if (!(parameter || guides ? take_by_parameter(w, known, quotients) : take_at_instant(w, known, quotients)))
+    return false;
+  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * quotients.of(unknowns[k]);
   return true;
 }
 

@@ -73,7 +73,7 @@ bool complete(const Demand& demand, Setup& setup, Run& run) {
   run.y_time = run.t;
   if (setup.exchanged) wheel_reduced_state(run.x, run.y);
   InForce& now = run.in_force;
-  apply_loads(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
+  set_road_and_inputs(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
   now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   return setup.sliding || !now.slides();
 }

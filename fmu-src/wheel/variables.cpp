@@ -3,6 +3,7 @@
 #include "variables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -62,7 +63,7 @@ int friction_mode(Reading& now) {
 }
 
 struct Access {
-  variable::Reference variable;
+  variable::Place variable;
   double (*read)(Reading&);
   double (*read_rate)(Reading&) = nullptr;
   double (*by_force)(const Acting&, const Acting&) = nullptr;
@@ -133,8 +134,8 @@ constexpr Row computed_row(const char* name, Type type, Role role) {
 }
 
 constexpr Row rows[] = {
-#define STORED(name, type, role, start, min, max) stored_row(#name, Type::type, Role::role, start, min, max),
-#define COMPUTED(name, type, role) computed_row<variable::name>(#name, Type::type, Role::role),
+#define STORED(name, reference, type, role, start, min, max) stored_row(#name, Type::type, Role::role, start, min, max),
+#define COMPUTED(name, reference, type, role) computed_row<variable::name>(#name, Type::type, Role::role),
 #include "variables.inc"
 };
 
@@ -147,7 +148,23 @@ constexpr bool is_in_its_place(const Row& row) {
 static_assert(std::all_of(std::begin(rows), std::end(rows), is_in_its_place), "the inputs end the stored variables");
 static_assert(stored_count - first_input == inputs_count);
 
+constexpr unsigned references[] = {
+#define STORED(name, reference, ...) reference,
+#define COMPUTED(name, reference, ...) reference,
+#include "variables.inc"
+};
+
+// The places by value reference; variable_count where no variable has it.
+constexpr auto places = [] {
+  std::array<unsigned, *std::max_element(std::begin(references), std::end(references)) + 1> place = {};
+  place.fill(variable_count);
+  for (unsigned v = 0; v < variable_count; ++v) place[references[v]] = v;
+  return place;
+}();
+
 }  // namespace
+
+unsigned variable_of(unsigned reference) { return reference < places.size() ? places[reference] : variable_count; }
 
 const Row& row_of(unsigned variable) { return rows[variable]; }
 

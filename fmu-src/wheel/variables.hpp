@@ -1,4 +1,4 @@
-// The FMU's variables as one table: the row number is the value reference. Names, types, roles, start values and limits
+// The FMU's variables as one table, in the order of the description. Names, types, roles, start values and limits
 // come from modelDescription.xml at build time (variables.inc, by fmu/variable_rows.py); how a calculated variable
 // is read stands in variables.cpp. Units and frames: docs/variables.md.
 #pragma once
@@ -22,9 +22,9 @@ struct Acting {
 enum class Type : unsigned char { real, integer, boolean, string };  // no variable is a string
 enum class Role : unsigned char { parameter, tunable, input, output, local };
 
-// Value references by name: parameters and inputs, which keep a value, then the variables that are computed on request.
+// The rows' places by name: parameters and inputs, which keep a value, then the variables that are computed on request.
 namespace variable {
-enum Reference : unsigned {
+enum Place : unsigned {
 #define STORED(name, ...) name,
 #define COMPUTED(name, ...) name,
 #include "variables.inc"
@@ -61,7 +61,16 @@ struct Limit {
   double value = 0;
 };
 Limit limit_passed(unsigned variable, double value);
-// Whether the value reference names a variable of this type.
+// The place of the variable that has this value reference; variable_count: there is none.
+unsigned variable_of(unsigned reference);
+
+// Variables that a caller lists by their value references.
+struct Listed {
+  const unsigned* references;
+  unsigned operator[](std::size_t k) const { return variable_of(references[k]); }
+};
+
+// Whether a variable of this type has the place.
 bool is_variable(unsigned variable, Type type);
 
 // The choice that a stored number stands for: a Formulation, FrictionLaw or SolverMethod.

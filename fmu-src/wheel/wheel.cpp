@@ -19,7 +19,7 @@ bool check_start(const Wheel& w, Reading& start, const Reporter& reporter) {
     return reporter.check(false, "At the start the wheel %s: the run ends there.", ending_of(now, Event::jams).text);
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
   for (const double force : start.dynamics().lambda) sum += force;
-  const auto set = [&](variable::Reference v) { return Digits{w.demand.parameters[v], 3}; };
+  const auto set = [&](variable::Place v) { return Digits{w.demand.parameters[v], 3}; };
   return reporter.check(angle_from_flat(start.kinematics().theta) > 0 && std::isfinite(sum),
                         "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, "
                         "g = %s m/s2, omega_z = %s rad/s.",
@@ -64,7 +64,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
   std::copy_n(w.setup.start, max_states, run.y);
   run.in_force.scene = w.setup.scene;
   if (w.setup.steered()) set_guide_rates(w.setup, w.demand, run.in_force.scene, true, run.y);
-  apply(w.setup, w.demand, 0, run.y, run.in_force);
+  enforce(w.setup, w.demand, 0, run.y, run.in_force);
   if (w.setup.exchanged) wheel_euler_states(run.y, w.demand.parameters[variable::psi_dot_start], run.x);
   w.demand.news = News::none;
   Reading start(w);
@@ -74,7 +74,7 @@ bool prepare(Wheel& w, const Reporter& reporter) {
 
 InForce in_force_now(const Wheel& w, double* y) {
   InForce now = w.run.in_force;
-  if (w.demand.news != News::none) apply(w.setup, w.demand, w.run.t, y, now);
+  if (w.demand.news != News::none) enforce(w.setup, w.demand, w.run.t, y, now);
   return now;
 }
 
@@ -116,7 +116,7 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   if (asked == taken && w.demand.news != News::stays) return;  // what is set to where it stays counts as set
   asked = taken;
   w.demand.news = News::set;
-  if (w.demand.kind == Kind::model_exchange && is_running(w.run.phase)) apply_at_once(w);
+  if (w.demand.kind == Kind::model_exchange && is_running(w.run.phase)) act_at_once(w);
 }
 
 bool is_prepared(Wheel& w) {

@@ -9,19 +9,15 @@ from pathlib import Path
 
 from lab.lesson import document, options
 from lab.lesson.bodies import Body, read_bodies
-from wheelfmu.fmu.outputs import check
+from wheelfmu.fmu.outputs import check, worded
 from wheelfmu.fmu.values import Fault
 
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
 
 
-def main(*words: str) -> int:
-    try:
+def main(*words: str) -> None:
+    with worded("view"):
         recorded(options.arguments(words))
-        return 0
-    except Fault as fault:
-        print(f"view: {fault}", file=sys.stderr)
-        return 2
 
 
 def live(wasm: Path, output: Path, *, overwrite: bool = False) -> None:
@@ -57,4 +53,4 @@ def named(bodies: list[Body], labels: list[str]) -> list[Body]:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    main(*sys.argv[1:])

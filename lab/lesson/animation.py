@@ -7,6 +7,7 @@ from pathlib import Path
 from PIL import Image
 
 from lab.lesson.browser import chromium, show, surroundings
+from wheelfmu.fmu.outputs import worded
 
 FRAMES_PER_SECOND = 12.5
 WINDOW = {"width": 1080, "height": 560}  # CSS pixels
@@ -46,4 +47,5 @@ def main(page_file: str, picture: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    with worded("figures"):
+        main(*sys.argv[1:])

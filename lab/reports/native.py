@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,20 +17,17 @@ from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import SINES
 
-from .truth import Array
+from .truth import Array, Solve
 
-Solve = Callable[..., tuple[float, Array, dict[str, int]]]  # seconds, headline outputs on a grid, counts
 ffi = FFI()
 DRIVER = ROOT / "tools" / "wheelfmu" / "release" / "driver.c"
 HEAP = "typedef struct { size_t sizes[10]; } Heap; Heap mallinfo2(void);"  # glibc's
-MOST_RUNS = 20_000
-LEAST_RUNS, LONG = 5, 0.1  # runs; s: the best of two or three runs of some milliseconds still scatters by a quarter
 
 
 @cache
 def timed() -> str:
     """The library with the driver."""
-    return str(build_target("wheel_timed") / "tools" / "wheelfmu" / "reports" / "libwheel_timed.so")
+    return str(build_target("wheel_timed") / "lab" / "reports" / "libwheel_timed.so")
 
 
 @cache
@@ -41,11 +38,6 @@ def driver_code() -> Any:
     declared += [f"{head};" for head in re.findall(r"^(?:void|double|Outcome) \w+\([^{]*\)", source, re.MULTILINE)]
     ffi.cdef("typedef unsigned fmi2ValueReference; typedef void* fmi2Component;" + HEAP + "".join(declared))
     return ffi.dlopen(timed())
-
-
-def bytes_in_use(code: Any) -> int:
-    sizes = code.mallinfo2().sizes
-    return sizes[7] + sizes[4]  # uordblks, hblkhd
 
 
 class Master:
@@ -89,14 +81,17 @@ class Master:
 
         return solve
 
+    def empty_call(self) -> float:
+        """Seconds of an FMI call that does nothing."""
+        with self.library.wheel() as wheel:
+            wheel.start()
+            component = ffi.cast("void *", wheel.component)
+            return min(self.code.empty_call(component, 10_000) for _ in range(20))
 
-def repeated(solve: Solve, seconds: float) -> tuple[list[float], Array, dict[str, int]]:
-    """Seconds of each repetition, for `seconds` in all, but not fewer than LEAST_RUNS of a run that is not long; the
-    last one's outputs and counts."""
-    costs: list[float] = []
-    spent = 0.0
-    while len(costs) < MOST_RUNS and (spent < seconds or (len(costs) < LEAST_RUNS and spent < LONG)):
-        cost, rows, counts = solve()
-        costs.append(cost)
-        spent += cost
-    return costs, rows, counts
+    def life(self, scene: int) -> float:
+        """Seconds in which an instance is created, initialized and freed."""
+        return self.code.life(self.library.description.guid.encode(), scene)
+
+    def bytes_in_use(self) -> int:
+        sizes = self.code.mallinfo2().sizes
+        return sizes[7] + sizes[4]  # uordblks, hblkhd

@@ -13,13 +13,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from lab.reports.programs import wheels
-from lab.reports.programs.kane import distance
-from lab.reports.programs.wheels import read
 from wheelfmu.truth.exact_motions import measured_critical_spin
 from wheelfmu.truth.motion import Library, Run
 
 from .page import Report, number, part
+from .programs import wheels
+from .programs.wheels import read
 
 HEAD = ["source", "scene", "reference", "wheel.fmu", "difference", "cause of the difference"]
 DEBIANS_PYTHON = "/usr/bin/python3"  # with python3-siconos, which no index of Python packages has
@@ -41,6 +40,8 @@ def ends(table: Mapping[str, np.ndarray] | Run, *names: str, places: int = 8) ->
 
 
 def kane(library: Library) -> Compared:
+    from .programs.kane import distance
+
     scene = "200 random states, loads, inertias and laws of friction: ψ̈, θ̈, φ̈, N"
     return "symbrim 0.1.0 (TU Delft; SymPy, Kane)", scene, "derived", "same", distance(), "rounding"
 
@@ -78,7 +79,9 @@ def critical(library: Library) -> Compared:
 
 
 def legendre(library: Library) -> Compared:
-    worst = max(wheels.legendre_error(library, disc) for disc in wheels.DISCS)
+    from .programs.legendre import DISCS, legendre_error
+
+    worst = max(legendre_error(library, disc) for disc in DISCS)
     who, scene = "Chaplygin, Appell, Korteweg, 1897–1900", "four discs, 10 s: ω_2 and ω_3 as functions of θ"
     return who, scene, "Legendre functions", "same", worst, "wheel.fmu: its solver at tolerance 1e-13"
 

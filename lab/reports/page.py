@@ -1,9 +1,10 @@
 """A report: its parts measure tables and figures; out of these data alone come its pictures and its page of Markdown.
 
 requirements.csv lists every figure in its report's order: the cell of a table (its row by the first column) or the
-reduction of a column that it is, unless a part measures it; unit, what is asked of it (an upper bound, zero included,
-or nothing), and words. In docs/results/data, figures.csv has the figures of all reports as measured, made.csv machine,
-versions, commit and date, NAME_TABLE.csv each long table, NAME.txt the short ones, one below the other.
+reduction of a column that it is, unless a part or the report's function `figures` returns it; unit, upper bound, where
+no test has one, and words. In docs/results/data, figures.csv has the figures of all reports as measured, made.csv
+machine, versions, commit and date of a report and of the parts that were measured again since, NAME_TABLE.csv each long
+table, NAME.txt the short ones, one below the other.
 """
 
 from __future__ import annotations
@@ -23,11 +24,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 
 from wheelfmu.fmu.paths import ROOT, build_folder
 from wheelfmu.fmu.values import Fault
 from wheelfmu.publishing.markdown import number, page, said
-from wheelfmu.truth import requirements
 from wheelfmu.truth.motion import Library
 
 RESULTS = ROOT / "docs" / "results"
@@ -38,7 +39,9 @@ Axis = Mapping[str, Any] | Sequence[Any] | Callable  # of the report
 PACKAGES = ("FMPy", "numpy", "scipy", "matplotlib")
 SHORT = 15  # rows
 REDUCTIONS = ("max", "min", "median", "sum")
-REQUIREMENTS = pd.read_csv(requirements.FILE).set_index(["report", "figure"])
+FILE = Path(__file__).with_name("requirements.csv")
+REQUIREMENTS = pd.read_csv(FILE).set_index(["report", "figure"])
+WHOLE = "all"  # in made.csv: every part
 
 
 @dataclass
@@ -53,6 +56,20 @@ class Part:
     measure: Callable
     seconds: float
     axes: Mapping[str, Axis]
+    pictures: dict[str, Callable[[Tables], Figure]] = field(default_factory=dict)
+
+    def picture(self, name: str) -> Callable[[Callable], Callable]:
+        """Names the picture that a function draws from tables, of which this part measures one."""
+
+        def keep(draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
+            self.pictures[name] = draw
+            return draw
+
+        return keep
+
+    @property
+    def name(self) -> str:
+        return self.measure.__name__
 
     @property
     def words(self) -> str:
@@ -60,7 +77,7 @@ class Part:
 
     def __call__(self, report: Report) -> dict[str, Any]:
         found = self.rows(report) if self.axes else self.measure(report)
-        return found if isinstance(found, dict) else {self.measure.__name__: found}
+        return found if isinstance(found, dict) else {self.name: found}
 
     def rows(self, report: Report) -> list[Row]:
         axes = [axis(report) if callable(axis) else axis for axis in self.axes.values()]
@@ -78,14 +95,18 @@ def part(seconds: float, axes: Mapping[str, Axis] | None = None) -> Callable[[Ca
 
 @dataclass
 class Report:
-    """What one report measures. quick: fewer cases and repetitions, to see that it works."""
+    """What one report measures, on top of the data that are in its folder. quick: fewer cases and repetitions, to see
+    that it works; follow: the figures that follow from its tables."""
 
     name: str
     library: Library
     folder: Path
     quick: bool = False
-    figures: dict[str, float] = field(default_factory=dict)
-    tables: Tables = field(default_factory=dict)
+    follow: Callable[[Tables], Row] = lambda _: {}
+
+    def __post_init__(self) -> None:
+        self.figures: Row = read_figures(self.name, self.folder)
+        self.tables = read_tables(self.name, self.folder)
 
     @cached_property
     def master(self) -> Any:
@@ -105,32 +126,38 @@ class Report:
             if isinstance(found, pd.DataFrame | list):
                 self.tables[name] = pd.DataFrame(found)
             else:
-                if (self.name, name) not in REQUIREMENTS.index:
-                    raise Fault(f"{requirements.FILE.relative_to(ROOT)} does not list {name} of {self.name}.")
                 self.figures[name] = float(found)
 
     def value(self, figure: Any) -> float:
-        """What a part has returned, or a cell or reduction of a table; NaN: not yet."""
-        if figure.Index in self.figures or figure.table not in self.tables:
+        """A cell or reduction of a table, or what a part has returned; NaN: not yet."""
+        if pd.isna(figure.table) or figure.table not in self.tables:
             return self.figures.get(figure.Index, np.nan)
         table = self.tables[figure.table]
-        values = table.max(numeric_only=True) if figure.column == "*" else table[figure.column]
+        values = table[figure.column]
         if figure.row in REDUCTIONS:
             return float(values.agg(figure.row))
         found = values[[number(name) == figure.row for name in table.iloc[:, 0]]]
         return float(found.iloc[0]) if len(found) else np.nan
 
-    def write(self) -> None:
-        """Figures and tables, and what they were measured with."""
-        found = {figure.Index: self.value(figure) for figure in REQUIREMENTS.loc[self.name].itertuples()}
+    def write(self, part: str = WHOLE) -> None:
+        """Figures and tables, and what the part was measured with."""
+        self.figures |= self.follow(self.tables)
+        listed = REQUIREMENTS.loc[self.name]
+        for name in self.figures.keys() - set(listed.index):
+            raise Fault(f"{FILE.relative_to(ROOT)} does not list {name} of {self.name}.")
+        found = {figure.Index: self.value(figure) for figure in listed.itertuples()}
         known = [(self.name, figure, f"{value:.7g}") for figure, value in found.items() if not np.isnan(value)]
         update(self.folder, "figures", pd.DataFrame(known, columns=["report", "figure", "measured"]))
         short = {name: frame for name, frame in self.tables.items() if len(frame) <= SHORT}
+        for name in short:  # one that was long has a file of its own
+            (self.folder / "data" / f"{self.name}_{name}.csv").unlink(missing_ok=True)
         for name in self.tables.keys() - short.keys():
             write_csv(self.folder, f"{self.name}_{name}", self.tables[name])
         if texts := [f"# {name}\n{csv_of(frame)}" for name, frame in short.items()]:
             (self.folder / "data" / f"{self.name}.txt").write_text("\n".join(texts), encoding="utf-8")
-        update(self.folder, "made", pd.DataFrame([made(self.name)]))
+        before = read_made(self.name, self.folder)
+        kept = before[before["part"] != part] if part != WHOLE else before.iloc[:0]
+        update(self.folder, "made", pd.concat([kept, pd.DataFrame([made(self.name, part)])]))
 
 
 def update(folder: Path, name: str, rows: pd.DataFrame) -> None:
@@ -159,25 +186,44 @@ def read_tables(name: str, folder: Path = RESULTS) -> Tables:
     return dict(zip(texts[::2], read, strict=True)) | long
 
 
-def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> tuple[str, str]:
-    """The page out of the data, and what was not met in words; views: adds the tables that follow from others."""
-    known = pd.read_csv(folder / "data" / "figures.csv").query("report == @name").set_index("figure")["measured"]
-    figures = REQUIREMENTS.loc[name].assign(measured=known).dropna(subset="measured").fillna({"unit": ""})
-    figures["shown"] = [f"{number(float(f.measured))} {f.unit}".strip() for f in figures.itertuples()]
-    asked = figures[figures["asked"].notna()]
-    met = asked["measured"] <= asked["asked"]
-    bounds = [f"{'≤' if f.asked else '='} {number(f.asked)}" for f in asked.itertuples()]
-    measured = asked["shown"].where(met, "**" + asked["shown"] + "**")
-    table = {"figure": asked["what"], "required": bounds, "measured": measured}
-    missed = [f"{f.what} ({f.shown})" for f in asked[~met].itertuples()]
-    run = pd.read_csv(folder / "data" / "made.csv", index_col="report", dtype=str).loc[name]
-    values = {f.Index: number(float(f.measured)) for f in figures.itertuples()}
+def read_figures(name: str, folder: Path = RESULTS) -> Row:
+    """The figures of a report as measured, those that are listed."""
+    path = folder / "data" / "figures.csv"
+    known = (
+        pd.read_csv(path).query("report == @name") if path.exists() else pd.DataFrame({"figure": [], "measured": []})
+    )
+    measured = dict(zip(known["figure"], known["measured"], strict=True))
+    return {figure: measured[figure] for figure in REQUIREMENTS.loc[name].index if figure in measured}
+
+
+def read_made(name: str, folder: Path = RESULTS) -> pd.DataFrame:
+    """What the report and its parts were measured with."""
+    path = folder / "data" / "made.csv"
+    return pd.read_csv(path, dtype=str).query("report == @name") if path.exists() else pd.DataFrame({"part": []})
+
+
+def misses(name: str, folder: Path) -> list[str]:
+    """A sentence for each figure that is beyond its bound, or missing."""
+    measured, sentences = read_figures(name, folder), []
+    for figure in REQUIREMENTS.loc[name].dropna(subset="asked").fillna({"unit": ""}).itertuples():
+        value = measured.get(figure.Index, np.nan)
+        if not value <= figure.asked:
+            found, most = (f"{number(float(x))} {figure.unit}".strip() for x in (value, figure.asked))
+            said = "is not measured" if np.isnan(value) else f"is {found}"
+            sentences.append(f"{name}.{figure.Index}, {figure.what}, {said}; at most {most} is allowed.")
+    return sentences
+
+
+def render(name: str, folder: Path, views: Callable[[Tables], Tables] = dict) -> str:
+    """The page out of the data; views: adds the tables that follow from others."""
+    values = {figure: number(float(measured)) for figure, measured in read_figures(name, folder).items()}
+    runs = [run._asdict() for run in read_made(name, folder).itertuples(index=False)]
     short = (folder / "data" / f"{name}.txt").exists()
-    given = {"name": name, "short": short, "f": values, "t": views(read_tables(name, folder)), "run": run}
-    return page(f"{name}.md.j2", TEMPLATES, asked=pd.DataFrame(table), missed=missed, **given), "; ".join(missed)
+    given = {"name": name, "short": short, "f": values, "t": views(read_tables(name, folder)), "runs": runs}
+    return page(f"{name}.md.j2", TEMPLATES, **given)
 
 
-def made(name: str) -> Row:
+def made(name: str, part: str) -> Row:
     """Machine, versions, commit, date; no names of users or folders. Files that reports write are no change."""
     info = Path("/proc/cpuinfo")
     models = re.findall(r"^model name\s*:\s*(.+)$", info.read_text() if info.exists() else "", re.MULTILINE)
@@ -188,6 +234,7 @@ def made(name: str) -> Row:
     changed = said("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs", ":!*.md", ":!*.html")
     return {
         "report": name,
+        "part": part,
         "date": f"{datetime.now(UTC):%Y-%m-%d}",
         "machine": f"{processor}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {platform.system()}",
         "compiler": f"{said(build['CMAKE_CXX_COMPILER'], '--version')}, {build['CMAKE_CXX_FLAGS_RELEASE']}",

@@ -100,7 +100,8 @@ def tyres(report: Report) -> dict[str, object]:
     return {"by_run": found, "coasts": pd.concat(curves)} | figures
 
 
-def picture(tables: Tables) -> Sheet:
+@tyres.picture("tyres")
+def draw_tyres(tables: Tables) -> Sheet:
     """C over the speed with its uncertainty, and the measured coast-down beside the one of wheel.fmu."""
     sheet, (left, right) = plots.sheet("ab", 80)
     repeat = repeatability(tables["rig"])
@@ -119,6 +120,3 @@ def picture(tables: Tables) -> Sheet:
     title = "Coast-down: measured (dots), wheel.fmu (lines)"
     plots.label(right, "time [s]", "rim speed [m/s]", title, xlim=(0, None), ylim=(0, 22))
     return sheet
-
-
-PICTURES = {"tyres": picture}

@@ -172,13 +172,12 @@ def grows(report: Report, of: Vehicle, run: Manoeuvre, signal: str, h: float) ->
     return bool(driven.ending) or np.ptp(driven.table[signal][-40:]) > np.ptp(driven.table[signal][10:50])
 
 
-@part(1)
-def car_steps(report: Report) -> dict[str, float]:
-    """the car: orders, and the step that a command takes"""
-    every, plane = report.tables["car_errors"], largest(report.tables["in_plane"])
+def figures(tables: Tables) -> dict[str, float]:
+    """Of the car: orders, and the step that a command takes."""
+    every, plane = tables["car_errors"], largest(tables["in_plane"])
     order = {x: np.log2(plane[x, 1000 * STEPS[0]] / plane[x, 1000 * STEPS[1]]) for x in EXCHANGES}
     off = {f"order_{x}": abs(order[x] - p) for x, p in zip(EXCHANGES, (1, 2, 4), strict=True)}
-    taken = every[every["step [ms]"] == 1000 * LANE.h]
+    taken = every[np.isclose(every["step [ms]"], 1000 * LANE.h)]
     return off | {
         "plane": plane["rollback", 1000 * STEPS[-1]],
         "rollback": moving(every)["rollback", 1000 * STEPS[-1]],

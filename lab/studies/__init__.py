@@ -4,8 +4,7 @@
     study = Study(grid={"s": [0, 0.01, 0.03]}, measures={"lowest": "lowest"})
     results = study.run("results/lowest.zarr")
 
-README.md is the guide. `plan` and the command's arguments need Python alone, a worker Dask, fmpy and numpy (and
-xarray with zarr, to write its results itself).
+README.md is the guide. `plan` and the command's arguments need Python alone, a worker Dask, fmpy and numpy.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ SHIFT = "By how much the run ends later than by another solver"
 def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int) -> tuple[xr.Dataset, str]:
     """The results with two more columns, of `count` wheels drawn at random, and a sentence for the summary."""
     axes = axes_of(study)
-    shape, every = tuple(axes.sizes.values()), points(axes, {})
+    shape, every = tuple(axes.sizes.values()), points(axes)
     drawn = np.sort(np.random.default_rng(0).permutation(math.prod(shape))[:count])
     few = {name: np.broadcast_to(values, shape).ravel()[drawn] for name, values in every.items()}
     common = replace(study, grid={}, list={}, measures={}, history=HEADLINE)

@@ -1,7 +1,8 @@
 """Runs a study with Dask: a LocalCluster, or the cluster behind a scheduler's address.
 
-The caller hands out the chunks of the results that have not been run. Workers write the results themselves where they
-reach the store; else the results come back, and the caller writes them.
+The caller hands out the chunks of the results that have not been run, and writes each as it comes back. Zarr renames
+each file when it is complete. The status of a chunk is written last: without it a chunk is run again, whatever else of
+it is there.
 """
 
 import hashlib
@@ -12,9 +13,9 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
-from functools import partial
+from itertools import islice, product
 from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
 from typing import TypeAlias
@@ -25,7 +26,7 @@ import xarray as xr
 import zarr
 from dask.array.core import normalize_chunks, slices_from_chunks
 from dask.system import CPU_COUNT
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 
@@ -34,15 +35,14 @@ from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.progress import bar
 from wheelfmu.fmu.values import Fault
 
-from .dataset import TITLE, axes_of, open_results, points, provenance, template
-from .plan import Status, Study, description
-from .worker import MARK, Region, Result, pack, run_chunk, write
+from .dataset import TITLE, Region, axes_of, open_results, points, provenance, template
+from .names import description
+from .plan import Status, Study
+from .worker import Result, pack, run_chunk
 
 Workers: TypeAlias = int | str | Cluster | None
 FEWEST, LARGEST = 16, 2**25  # wheels, and bytes of a history, in a chunk
 STEPS = 10_000_000  # between communication points, in a chunk
-BATCH = 100  # chunks that the scheduler gets at a time; it hands them out as workers become free
-PIECES = 16  # a chunk during which a worker died is divided into so many
 PATIENCE = 1800  # s for the first worker to appear, on a loaded machine or in a cluster's queue
 ANSWER = 300  # s for a scheduler to answer; the address may be wrong
 
@@ -65,7 +65,8 @@ def run(
 
     The progress bar is for terminals; the environment variable TQDM_DISABLE=1 hides it there.
     """
-    fmu, place = Path(fmu), str(out) if "://" in str(out) else str(Path(out).resolve())
+    fmu, place = Path(fmu), str(out).removeprefix("file://")
+    place = place if "://" in place else str(Path(place).resolve())
     if not fmu.is_file():
         raise Fault(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
     study.check(values.variables(description(fmu)))
@@ -86,11 +87,7 @@ def fill(study: Study, place: str, fmu: Path, workers: Workers, chunk: int | Non
         print(f"study: warning: {doubt}", file=sys.stderr)
     crew = cluster(workers) if isinstance(workers, int | None) else nullcontext(workers)
     with crew as running, Client(running, timeout=ANSWER) as client:
-        mark = uuid.uuid4().hex
-        with tempfile.TemporaryDirectory() as folder:
-            # A new name per run: workers still read modules from the file of an earlier run, which must not change.
-            upload = pack(fmu, Path(folder) / f"wheel-{mark}.zip")
-            client.upload_file(str(upload))
+        upload = sent(client, fmu)
         client.wait_for_workers(1, timeout=PATIENCE)
         if group is None:
             empty = template(study, axes, variables, chunk or chunk_size(study, axes, len(client.nthreads())))
@@ -98,18 +95,29 @@ def fill(study: Study, place: str, fmu: Path, workers: Workers, chunk: int | Non
             empty.to_zarr(place, mode="w", compute=False, consolidated=False, zarr_format=3)
             group = zarr.open_group(place, mode="r+")
             group.attrs["fingerprint"] = fingerprint  # last: all is there
-        group.attrs[MARK] = mark
         common = replace(study, grid={}, list={})
         common.parsed  # noqa: B018 - here, for a worker has no description of the variables
-        task = partial(run_chunk, upload.name, common, place, mark)
+
+        def submit(region: Region) -> object:
+            return client.submit(run_chunk, upload, common, points(axes, region), pure=False)
+
         with bar(total=group["status"].size, initial=there, unit=" wheels", mininterval=0.2) as done:
-            for region, result in finished(
-                client, task, partial(points, axes), missing(group, [*map(str, axes.sizes)])
-            ):
-                if result is not None:
-                    write(place, mark, region, result)
-                done.update(math.prod(part.stop - part.start for part in region.values()))
+            for region, result in finished(client, submit, missing(group)):
+                for name in sorted(result, key="status".__eq__):
+                    group[name][region] = result[name]
+                done.update(result["status"].size)
     return open_results(place)
+
+
+def sent(client: Client, fmu: Path) -> str:
+    """The name under which workers have the FMU and this package.
+
+    A new one per run: workers still read modules from the file of an earlier run, which must not change.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        upload = pack(fmu, Path(folder) / f"wheel-{uuid.uuid4().hex}.zip")
+        client.upload_file(str(upload))
+    return upload.name
 
 
 def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:
@@ -130,47 +138,48 @@ def kept(place: str, fingerprint: str, overwrite: bool) -> zarr.Group | None:
     return group
 
 
-def missing(group: zarr.Group, dims: list[str]) -> list[Region]:
+def missing(group: zarr.Group) -> list[Region]:
     """The chunks that have not been run, in order."""
     status, codes = group["status"], group["status"][:]
     chunks = slices_from_chunks(normalize_chunks(status.chunks, status.shape))
-    left = (parts for parts in chunks if (codes[parts] == Status.not_computed).any())
-    return [dict(zip(dims, parts, strict=True)) for parts in left]
+    return [region for region in chunks if (codes[region] == Status.not_computed).any()]
 
 
-def finished(
-    client: Client, task: Callable[..., Result | None], points_of: Callable[[Region], dict], regions: list[Region]
-) -> Iterator[tuple[Region, Result | None]]:
-    """The regions as they are finished, with the results that are not written yet.
+def finished(client: Client, submit: Callable, regions: list[Region]) -> Iterator[tuple[Region, Result]]:
+    """The regions with their results, as they come; two for each worker are on their way.
 
-    Those during which a worker died come last, in pieces and each alone, until the wheels that kill it are known.
+    Regions during which a worker died come last, wheel by wheel, until those that kill it are known.
     """
-    batches = [regions]
-    while batches:
-        batch = batches.pop()
-        futures = client.map(task, batch, [*map(points_of, batch)], pure=False, batch_size=BATCH)
-        waiting = dict(zip(futures, batch, strict=True))
-        for future in as_completed(futures, loop=client.loop):
-            region = waiting.pop(future)
-            if not isinstance(future.exception(), KilledWorker):
-                yield region, future.result()
-            elif len(pieces := divided(region)) > 1 or len(batch) > 1:
-                batches += [[piece] for piece in pieces]
-            else:
-                yield region, died(region)
+    left, suspects = iter(regions), []
+    sent: dict[Future, Region] = {}
+    done = as_completed(loop=client.loop)
+
+    def fill_up() -> None:
+        many = max(1, 2 * len(client.nthreads()))  # one where every worker starts again
+        for region in islice(left, max(0, many - len(sent))):
+            future = submit(region)
+            sent[future] = region
+            done.add(future)
+
+    fill_up()
+    for future in done:
+        region = sent.pop(future)
+        fill_up()
+        if isinstance(future.exception(), KilledWorker):
+            suspects.append(region)
+        else:
+            yield region, future.result()
+    for region in suspects:
+        for place in product(*(range(part.start, part.stop) for part in region)):
+            wheel = tuple(slice(k, k + 1) for k in place)
+            future = submit(wheel)
+            yield wheel, died(wheel) if isinstance(future.exception(), KilledWorker) else future.result()
 
 
 def died(region: Region) -> Result:
     """The results of one wheel whose run has killed its worker."""
     shape, text = [1] * len(region), "The worker process died during this run."
     return {"status": np.full(shape, Status.failed, "i1"), "message": np.full(shape, text, "T")}
-
-
-def divided(region: Region) -> list[Region]:
-    """The region in pieces along its longest side; one wheel is one piece."""
-    name = max(region, key=lambda name: region[name].stop - region[name].start)
-    parts = np.array_split(range(region[name].start, region[name].stop), PIECES)
-    return [{**region, name: slice(int(part[0]), int(part[-1]) + 1)} for part in parts if part.size]
 
 
 def chunk_size(study: Study, axes: xr.Dataset, workers: int) -> int:
@@ -204,10 +213,11 @@ def cluster(workers: int | None = None) -> Iterator[LocalCluster]:
     options |= {"distributed.deploy.lost-worker-timeout": "1000 hours"}
     # On a loaded machine a worker logs an error where the cluster closes during its heartbeat.
     processes = {"n_workers": 0, "threads_per_worker": 1, "memory_limit": 0, "silence_logs": "CRITICAL"}
-    with dask.config.set(options), ExitStack() as stack:
+    with dask.config.set(options):
         with deaf():
-            local = stack.enter_context(LocalCluster(**processes, dashboard_address=":0"))
-        count = workers or CPU_COUNT
-        local.scale(count)
-        local.wait_for_workers(count, timeout=PATIENCE)
-        yield local
+            local = LocalCluster(**processes, dashboard_address=":0")
+        with local:
+            count = workers or CPU_COUNT
+            local.scale(count)
+            local.wait_for_workers(count, timeout=PATIENCE)
+            yield local

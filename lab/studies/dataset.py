@@ -1,8 +1,7 @@
-"""The labelled dataset of a study: empty before any wheel has run, opened, drawn, exported, summarized."""
+"""The labelled dataset of a study: empty before any wheel has run, opened, exported, summarized."""
 
 import json
 import platform
-import re
 from collections.abc import Collection, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
@@ -15,57 +14,36 @@ import xarray as xr
 import zarr
 
 from wheelfmu.fmu import outputs
-from wheelfmu.fmu.values import Variable, moments
+from wheelfmu.fmu.values import Variable
 
-from .plan import OWN, PLANE, POINT, QUANTITIES, SIZE, SLIP, Status, Study, counters_of, description
-from .worker import Array, Region
+from .names import QUANTITIES, counters_of, description
+from .plan import OWN, POINT, Status, Study
+from .worker import Array
 
 TITLE = "A study with wheel.fmu"
-ANGLE = "angle to the ground"
-GREEK = {"psi": "ψ", "theta": "θ", "phi": "φ", "omega": "ω", "lambda": "λ", "mu": "μ", "tau": "τ"}
-SYMBOLS = {  # in labels, by the text of a measure
-    rf"\s*(lowest|min\({PLANE}\))\s*": f"smallest {ANGLE}",
-    rf"\b{PLANE}\b": ANGLE,
-    rf"^\s*({SLIP}|max\({SLIP}\))\s*$": "largest slip",
-    r"^\s*slid\s*$": "time of sliding",
-    r"\b(\w+)_start\b": r"initial \1",
-    **{rf"\b{name}(?![a-z])": symbol for name, symbol in GREEK.items()},
-    r"\b(\w)_ddot": "\\1\N{COMBINING DIAERESIS}",
-    r"\b(\w)_dot": "\\1\N{COMBINING DOT ABOVE}",
-}
+Region = tuple[slice, ...]  # of the results: the wheels of a chunk, in the order of the dimensions
 
 
 def axes_of(study: Study) -> xr.Dataset:
-    """The values that vary: each a dimension of a grid, or all along the wheels of a list; and moments that follow."""
-    axes = xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
-    if not study.body:
-        return axes
-    size = {name: x for name, x in {**study.values, **axes.coords}.items() if name in SIZE}
-    return axes.assign_coords(moments(study.body, **size))
+    """The values that vary: each a dimension of a grid, or all along the wheels of a list."""
+    return xr.Dataset(coords={name: (name if study.grid else POINT, values) for name, values in study.varied.items()})
 
 
-def sample(bounds: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Array]:
-    """A list of wheels for a study: a Latin hypercube between the lowest and the highest value of each name."""
-    from scipy.stats import qmc  # slow to load
-
-    unit = qmc.LatinHypercube(len(bounds), rng=seed).random(count)
-    return dict(zip(bounds, qmc.scale(unit, *zip(*bounds.values(), strict=True)).T, strict=True))
-
-
-def points(axes: xr.Dataset, region: Region) -> dict[str, Array]:
-    """The values of a region of the results, by name: arrays to be broadcast against each other."""
-    return {name: x.variable.set_dims([*axes.sizes]).values for name, x in axes.isel(region).coords.items()}
+def points(axes: xr.Dataset, region: Region = ()) -> dict[str, Array]:
+    """The values of a region of the results, all if none is given, by name: to be broadcast against each other."""
+    part = axes.isel(dict(zip(axes.sizes, region, strict=False)))
+    return {name: x.variable.set_dims([*axes.sizes]).values for name, x in part.coords.items()}
 
 
 def template(study: Study, axes: xr.Dataset, variables: Mapping[str, Variable], size: int) -> xr.Dataset:
     """All coordinates, and columns that hold nothing yet, in chunks of at most `size` wheels."""
-    about = {name: (v.unit, label(name), v.description) for name, v in {**variables, **QUANTITIES}.items()}
+    about = {name: (v.unit, v.description) for name, v in {**variables, **QUANTITIES}.items()}
     chunks = da.core.normalize_chunks("auto", tuple(axes.sizes.values()), limit=size, dtype="i1")
     columns = OWN | {name: (-1, "i8", *about[name]) for name in counters_of(variables)}
     for name, measure in study.parsed.items():
-        (unit, _, meaning), text = about[measure.quantity], study.measures[name]
+        unit, meaning = about[measure.quantity]
         unit = "s" if measure.kind in ("<", ">", "lasting") else unit
-        columns[name] = (np.nan, "f8", unit, label(text), f"{meaning}; {text}")
+        columns[name] = (np.nan, "f8", unit, f"{meaning}; {study.measures[name]}")
     columns |= {name: (np.nan, "f8", *about[name]) for name in study.history}
     results = {}
     for name, (nothing, dtype, *texts) in columns.items():
@@ -76,20 +54,13 @@ def template(study: Study, axes: xr.Dataset, variables: Mapping[str, Variable], 
     results["status"].attrs |= {"flag_values": [*map(int, fates)], "flag_meanings": " ".join(s.name for s in fates)}
     coordinates = {name: values.assign_attrs(attributes(*about[name])) for name, values in axes.coords.items()}
     if study.history:
-        coordinates["time"] = ("time", study.times, attributes("s", "time", ""))
+        coordinates["time"] = ("time", study.times, attributes("s", ""))
     return xr.Dataset(results, coordinates)
 
 
-def attributes(unit: str, name: str, meaning: str) -> dict[str, str]:
+def attributes(unit: str, meaning: str) -> dict[str, str]:
     """Those that are not empty."""
-    return {k: v for k, v in (("units", unit), ("long_name", name), ("description", meaning)) if v}
-
-
-def label(text: str) -> str:
-    """The short label of a variable, or of a measure of variables, for axes and legends: `initial θ`."""
-    for pattern, symbol in SYMBOLS.items():
-        text = re.sub(pattern, symbol, text)
-    return re.sub(r"\d+\.\d{5,}(?!\d*e)", lambda found: f"{float(found[0]):.4g}", text)
+    return {key: text for key, text in (("units", unit), ("description", meaning)) if text}
 
 
 def provenance(study: Study, fmu: Path) -> dict[str, object]:

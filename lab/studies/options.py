@@ -9,31 +9,17 @@ import re
 from pathlib import Path
 from typing import Any
 
-from lab.studies.plan import SETTABLE, Study, check_names, description
+from lab.studies.names import SETTABLE, check_names, description
+from lab.studies.plan import Study
 from wheelfmu.fmu.csv_file import read_table
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import (
-    MOMENTS,
-    Fault,
-    Parser,
-    Variable,
-    bodies,
-    limited,
-    number,
-    parted,
-    preset,
-    single,
-    suggestion,
-    variables,
-    wheels,
-)
+from wheelfmu.fmu.values import Fault, Parser, Variable, limited, number, parted, single, suggestion, variables
 
+INTERRUPTED = "stopped; the same command continues from here."
 EXAMPLES = Path(__file__).parent / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 SHOWN = """examples:
   ./scripts/study fates                     one of the examples: {names}
-  ./scripts/study fates --wheel coin        with a preset wheel: {wheels}
-  ./scripts/study fates --body disc         with a homogeneous body of the same m, r_0 and r
   ./scripts/study my_study.py               a file that defines study = Study(...); see lab/studies/README.md
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
@@ -77,15 +63,13 @@ def study_of(arguments: argparse.Namespace) -> Study:
     check_names([*varied, *given], SETTABLE, known)
     if bool(axes) == bool(table):
         raise Fault("Which wheels? Give an example, a file, --vary NAME=VALUES, or --list CSV; see --help.")
-    derived = MOMENTS if arguments.body else ()
-    names = ("history", "stop_time", "interval", "tolerance", "branch_at", "body")
+    names = ("history", "stop_time", "interval", "tolerance")
     fields = {name: getattr(arguments, name) for name in names}
     fields |= {"measures": pairs("--measure", arguments.measure)} if arguments.measure else {}
     study = Study(
         grid={name: numbers(known[name], text) for name, text in axes.items()},
         list={name: table.read(name, known[name].number_of) for name in table.columns} if table else {},
-        values={name: x for name, x in arguments.preset.items() if name not in {*varied, *derived}}
-        | {name: known[name].number_of(text) for name, text in given.items()},
+        values={name: known[name].number_of(text) for name, text in given.items()},
         **fields,
     )
     study.check(known)
@@ -123,14 +107,12 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     parser = Parser(
         prog="./scripts/study",
         description="Runs many wheels on all cores or on a Dask cluster. Started again, it continues where it stopped.",
-        epilog=SHOWN.format(names=", ".join(NAMES), wheels=", ".join(wheels())),
+        epilog=SHOWN.format(names=", ".join(NAMES)),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     several: dict[str, Any] = {"action": "append", "default": []}
     add = parser.add_argument
     add("study", nargs="?", help="an example's name, a Python file, or earlier results to go on with")
-    add("--wheel", metavar="NAME", help="a preset, to which lengths, times and rates of a study's file are scaled")
-    add("--body", metavar="NAME", help=f"{', '.join(bodies())}: J_x, J_y, J_z follow from m, r_0, r of each wheel")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
@@ -145,7 +127,6 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--stop-time", type=seconds, default=10.0, help="s (10)")
     add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
     add("--tolerance", type=tolerance, help="relative tolerance of the FMU (1e-8)")
-    add("--branch-at", type=seconds, metavar="T", help="a shared start: tunable parameters and inputs vary from T s on")
     add("--workers", type=count, help="processes on this machine; all cores if not given")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
     add("--fmu", type=Path, default=ROOT / "wheel.fmu", help="another one than that of ./scripts/run")
@@ -156,6 +137,5 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     add("--check", type=count, metavar="N", help="run N wheels again by another solver; state their error")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
-    arguments.preset = preset(arguments.wheel) if arguments.wheel else {}
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)
     return arguments

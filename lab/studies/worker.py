@@ -2,10 +2,8 @@
 
 The caller uploads wheel.fmu with this package and the compiled march.c in it. Dask passes it to workers that join later
 too, before they get any task. Wheels run one after the other, with fmi2Reset between them, never a second instance;
-march.c steps along the communication points, where Python would take longer than the wheel. A start that several wheels
-share runs once. A wheel that fails is a status with the FMU's message; nothing in run_block raises because of what a
-wheel does. A worker loads xarray only to write its results itself; where it cannot reach the caller's store, which has
-the caller's mark, they go back to the caller.
+march.c steps along the communication points, where Python would take longer than the wheel. A wheel that fails is a
+status with the FMU's message; nothing in run_block raises because of what a wheel does.
 """
 
 import shutil
@@ -23,14 +21,15 @@ import numpy as np
 from distributed import get_worker
 from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2FMUstate
+from fmpy.fmi2 import FMU2Slave
 from numpy.typing import NDArray
 
-from wheelfmu.fmu import values
+from wheelfmu.fmu import values as shared
 from wheelfmu.fmu.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK, TERMINATED, WARNING, FMU2Wheel
 from wheelfmu.fmu.values import Fault
 
-from .plan import Status, Study, counters_of
+from .names import counters_of
+from .plan import Status, Study
 
 Array = NDArray[np.float64]
 Result = dict[str, NDArray]
@@ -40,8 +39,6 @@ Run = tuple[Status, float, Array]
 MARCH = "march.library"  # march.c, compiled (Dask would take a .so for a module), beside the FMU's modelDescription.xml
 NO_ROWS = np.empty((0, 0))
 NUMBERS = {"Real": float, "Integer": int, "Boolean": int}
-Region = dict[str, slice]  # of the results, by dimension: the wheels of a chunk
-MARK = "caller"  # the attribute by which a worker recognizes the caller's store
 _turn = Lock()  # a worker's threads take turns at the instance
 # Words of the FMU's message, for each end of a run.
 ENDINGS = {
@@ -66,8 +63,6 @@ class Instance:
         self.variables = self.fmu.variables
         self.counters = counters_of(self.variables)
         self.typed = cache(self._typed)
-        self._snapshot = fmi2FMUstate()  # at branch_at
-        self._kept: tuple | None = None  # values and messages of that start
         self._march = CDLL(str(Path(folder) / MARCH)).march
 
     def said(self) -> str:
@@ -89,32 +84,17 @@ class Instance:
             found |= zip(mine, getattr(self.fmu, f"get{kind}")(references), strict=True)
         return found
 
-    def begin(self, values: Values, study: Study) -> Run:
-        """To t = 0, or to `branch_at`: restored if the start that was kept last had these values, else run and kept.
-
-        FMICallException if the FMU refuses a value.
-        """
-        fmu, at, start = self.fmu, study.branch_at or 0.0, (values, study.tolerance, study.branch_at)
-        if self._kept and self._kept[0] == start:
-            fmu.messages = [*self._kept[1]]
-            fmu.setFMUstate(self._snapshot)
-            return Status.reached, at, NO_ROWS
-        self._kept, fmu.messages = None, []
+    def begin(self, values: Values, tolerance: float | None) -> None:
+        """To t = 0; FMICallException if the FMU refuses a value."""
+        self.fmu.messages = []
         try:
-            fmu.reset()
+            self.fmu.reset()
         except FMICallException:  # after fmi2Fatal the standard allows no further call to an instance
-            self.fmu = fmu = fmu.new()
+            self.fmu = self.fmu.new()
         self.set(values)
-        fmu.setupExperiment(study.tolerance)
-        fmu.enterInitializationMode()
-        fmu.exitInitializationMode()
-        if study.branch_at is None:
-            return Status.reached, at, NO_ROWS
-        run = self.march(np.array([0.0, at]), ())
-        if run[0] == Status.reached:
-            fmu.fmi2GetFMUstate(fmu.component, byref(self._snapshot))
-            self._kept = (start, [*fmu.messages])
-        return run
+        self.fmu.setupExperiment(tolerance)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
 
     def march(self, times: Array, names: Sequence[str]) -> Run:
         """Steps along the times from times[0], the present one, and reads these Real variables at each."""
@@ -130,23 +110,18 @@ class Instance:
                 fate = next((fate for words, fate in ENDINGS.items() if words in self.said()), fate)
         return fate, end, rows[: reached.value]
 
-    def wheel(self, start: Values, change: Values, study: Study, times: Array) -> dict[str, object]:
+    def wheel(self, values: Values, study: Study, times: Array) -> dict[str, object]:
         """All results of one wheel: NaN, of a counter -1, where the run has none."""
         begin, last = perf_counter(), {}
-        asked = dict.fromkeys(
-            [*self.counters, *study.sampled, *(n for m in study.parsed.values() for n in m.variables)]
-        )
+        measured = [name for measure in study.parsed.values() for name in measure.variables]
         try:
-            run = self.begin(start, study)
-            if run[0] == Status.reached:
-                self.set(change)
-                run = self.march(times, study.sampled)
+            self.begin(values, study.tolerance)
+            status, end, rows = self.march(times, study.sampled)
         except FMICallException:
-            run = Status.refused, np.nan, NO_ROWS
+            status, end, rows = Status.refused, np.nan, NO_ROWS
         else:
             with suppress(FMICallException):  # an instance that failed may be unable to answer
-                last = self.get(tuple(asked))
-        status, end, rows = run
+                last = self.get(tuple(dict.fromkeys([*self.counters, *study.sampled, *measured])))
         outside = "A value is outside its limits." * (status == Status.refused)
         result = {"status": status, "message": self.said() or outside, "end_time": end}
         result["fmu_time"] = perf_counter() - begin
@@ -163,39 +138,25 @@ class Instance:
 
 
 def run_block(fmu: Instance, study: Study, points: Mapping[str, Array]) -> Result:
-    """The outcomes of wheels whose values by name are broadcast against each other, in their common shape.
+    """The results of wheels whose values by name are broadcast against each other, in their common shape.
 
     Of the study only what all its wheels have in common is used.
     """
-    columns = np.broadcast_arrays(*points.values())
-    late = [name for name in points if study.branches(fmu.variables[name])]
-    changes = [dict(zip(points, row, strict=True)) for row in zip(*(x.ravel().tolist() for x in columns), strict=True)]
-    starts = [{n: change.pop(n) for n in points if n not in late} | study.values for change in changes]
-    order = sorted(range(len(starts)), key=lambda i: [*starts[i].values()] if late else i)  # a shared start in a row
-    times = np.array(study.times)
-    wheels = {i: fmu.wheel(starts[i], changes[i], study, times) for i in order}
+    columns, times = np.broadcast_arrays(*points.values()), np.array(study.times)
+    starts = zip(*(column.ravel().tolist() for column in columns), strict=True)
+    wheels = [fmu.wheel(study.values | dict(zip(points, start, strict=True)), study, times) for start in starts]
 
     def column(name: str) -> NDArray:
-        values = np.array([wheels[i][name] for i in range(len(starts))], "T" if name == "message" else None)
+        values = np.array([wheel[name] for wheel in wheels], "T" if name == "message" else None)
         return values.reshape(*columns[0].shape, *values.shape[1:])
 
     return {name: column(name) for name in wheels[0]}
 
 
-def run_chunk(
-    upload: str, study: Study, place: str, mark: str, region: Region, points: Mapping[str, Array]
-) -> Result | None:
-    """Runs the wheels of a chunk and writes them; returns the results that could not be written from here.
-
-    upload: name of the uploaded file; study: without its axes; place, mark: of the caller's store.
-    """
+def run_chunk(upload: str, study: Study, points: Mapping[str, Array]) -> Result:
+    """The results of a chunk of wheels; upload: name of the uploaded file; study: without its axes."""
     with _turn:
-        result = run_block(instance(upload), study, points)
-    try:
-        write(place, mark, region, result)
-    except Exception:  # noqa: BLE001 - no zarr, folder, permission, network or space: the caller tries, and reports
-        return result
-    return None
+        return run_block(instance(upload), study, points)
 
 
 @cache
@@ -206,23 +167,7 @@ def instance(upload: str) -> Instance:
     return Instance(str(package.with_suffix("")))
 
 
-def write(place: str, mark: str, region: Region, result: Result) -> None:
-    """The columns of a region, then the status; FileNotFoundError if the caller's mark is not there.
-
-    Each file is renamed when it is complete. A chunk without status is run again, whatever else of it is there.
-    """
-    import xarray
-    import zarr
-
-    group = zarr.open_group(place, mode="r+")
-    if group.attrs.get(MARK) != mark:
-        raise FileNotFoundError(f"{place} does not have the mark of this caller.")
-    columns = {name: ([*region, "time"][: x.ndim], x) for name, x in result.items() if name != "status"}
-    xarray.Dataset(columns).to_zarr(place, mode="r+", region=region, consolidated=False, zarr_format=3)
-    group["status"][tuple(region.values())] = result["status"]
-
-
-# The package as a worker gets it: two of its parts, and where the whole is installed also that.
+# A package as a worker gets it: some of its parts, and where the whole is installed also that.
 JOINED = "from pkgutil import extend_path\n\n__path__ = extend_path(__path__, __name__)\n"
 
 
@@ -235,8 +180,9 @@ def pack(fmu: str | Path, path: Path) -> Path:
     shutil.copy(fmu, path)
     with zipfile.ZipFile(path, "a") as package:
         package.write(library, MARCH)
-        for name, folder in {"lab/studies": here, "wheelfmu/fmu": Path(values.__file__).parent}.items():
+        for name, folder in {"lab/studies": here, "wheelfmu/fmu": Path(shared.__file__).parent}.items():
             package.writestr(f"{name.partition('/')[0]}/__init__.py", JOINED)
             for source in folder.glob("*.py"):
-                package.write(source, f"{name}/{source.name}")
+                joined = f"\n{JOINED}" * (source.name == "__init__.py")
+                package.writestr(f"{name}/{source.name}", source.read_text(encoding="utf-8") + joined)
     return path

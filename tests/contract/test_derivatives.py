@@ -307,6 +307,11 @@ def test_the_brakes_moment_on_a_held_wheel_has_the_derivatives_of_its_share(whee
     want = np.array([tau * rolling / capacity**2, -brake / capacity, tau * brake * 0.02 / capacity**2])  # F_Z lifts
     (found,) = w.jacobian(["tau_brake"], ["M_brake", "M_3", "F_Z"])
     within(np.abs(found / want - 1).max(), 4096 * EPSILON, "derivatives of the brake's moment, relative")
+    start = wheel().initializing(**BRAKED, M_brake=brake, M_3=torque)  # s and m act through the share alone
+    found = start.jacobian(["tau_brake", "tau"], ["s", "m"])
+    want_s, want_m = -tau * brake * np.array([N, 0.02 * 9.81]) / capacity**2
+    within(np.abs(found[0] / [want_s, want_m] - 1).max(), 1e-9, "derivatives by s and m, relative")
+    assert not found[1].any()
     beyond(abs(w.jacobian(["tau"], ["M_3"])[0, 0] / want[1] - 1), 0.05, "derivative of both moments, relative")
 
 

@@ -69,6 +69,8 @@ def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(upri
     reached = w.get("omega_z")[0]
     within(abs(reached - (0.5 + 0.25) / INERTIA), 8 * EPSILON, "omega_z reached, rad/s")
     assert w.by(0.5).get("M_3") == [2.0]
+    waits = upright().give({"M_3": (1.0, 2.0)}).by(0.0)  # a step of no length takes none of them away
+    assert waits.by(0.5).get("M_3", "omega_z") == [2.0, reached]
     gained = w.get("omega_z")[0] - reached
     within(abs(gained - 0.5 * 2.0 / INERTIA), 16 * EPSILON, "omega_z gained, rad/s")
     beyond(abs(gained - 0.5 * 1.0 / INERTIA), 0.01, "omega_z gained from the first value, rad/s")

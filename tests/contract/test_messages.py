@@ -48,6 +48,8 @@ def ends(library: Library) -> Iterator[Case]:
     for _ in range(100):
         assert w.back(before).step(3.0) == DISCARD
     yield w.texts()[-1], "100 ends were logged; further ones are not logged until a reset."
+    assert w.back(before).step(3.0) == DISCARD and w.texts() == []
+    assert w.reset() == OK and w.start(START, mu_max=0.3).step(3.0) == DISCARD and len(w.texts()) == 1
     w = library.wheel().initializing(
         J_x=0.1, J_y=0.1, J_z=0.1, theta_start=1.0, slip_y_start=-0.5, mu_max=6.0, mu_slide=5.0
     )

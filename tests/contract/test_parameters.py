@@ -62,6 +62,11 @@ def test_faulty_parameters_can_be_corrected_in_initialization_mode_also_in_a_res
     w.put(m=-1.0).back(w.serialized())
     assert w.get_one("lambda_3")[0] == DISCARD
     assert w.said() == f"m = -1: {ABOVE}"
+    assert w.get_one("lambda_3")[0] == DISCARD and w.texts() == []  # logged once, and once where it was restored
+    assert w.back(w.serialized()).get_one("lambda_3")[0] == DISCARD and w.said() == f"m = -1: {ABOVE}"
+    assert w.put(m=20.0, r_0=-1.0).get_one("lambda_3")[0] == DISCARD
+    assert w.texts() == [f"r_0 = -1: {ABOVE}"]  # a second fault, after the first
+    w.put(r_0=0.3)
     assert w.put(m=20.0).get("lambda_3") == at_start
     assert (w.exitInitializationMode(), w.take_messages()) == (OK, [])
     assert w.get("lambda_3") == at_start != wheel().start(m=20.1).get("lambda_3")

@@ -91,3 +91,11 @@ def test_fast_straight_rolling_stops_where_phi_alone_has_too_few_digits(wheel) -
     assert w.get("psi", "psi_dot") == [w.get("psi_start")[0], 0.0]
     assert w.step(2e8) == ERROR and "too few digits" in w.sentences[-1]
     within(abs(w.get("phi")[0] / -1e11 - 1), 16 * EPSILON, "angle, relative")
+
+
+def test_a_slide_that_the_loads_begin_at_the_start_counts_from_the_end_of_initialization_on(wheel) -> None:
+    for torque, slides in ((-80.0, 1), (-8.0, 0)):
+        w = wheel(logging=True).initializing(**UPRIGHT, mu_max=0.3, mu_slide=0.25, M_3=torque)
+        assert w.get("contact_mode", "n_events") == [slides, 0]
+        assert w.exitInitializationMode() == OK
+        assert w.get("n_events") == [slides] and len(w.texts()) == slides

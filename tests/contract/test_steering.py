@@ -154,3 +154,56 @@ def test_a_carrier_that_turns_about_one_axis_alone_stops(wheel, angle, formulati
     assert w.get(f"{angle}_dot") == pytest.approx([0.5])  # the partner: it turns
     before = w.put(**{f"{angle}_dot_guide": 0.0}).get(angle)
     assert w.get(f"{angle}_dot") == [0] and w.by(0.1).get(f"{angle}_dot") == [0] and w.get(angle) == before
+
+
+@formulations
+@surfaces
+def test_rates_that_a_ramp_has_brought_to_zero_stay_there_without_acceleration(
+    library: Library, road: dict, formulation: int
+) -> None:
+    """Read before and after the rates are set to where they have arrived."""
+    inertial = ("psi_ddot", "theta_ddot", "psi_dot", "theta_dot")
+    with library.wheel() as w:
+        w.start(**LEANS, **road, formulation=formulation)
+        w.put(psi_dot_guide=0.5, theta_dot_guide=-0.25)
+        assert w.get("psi_ddot", "theta_ddot") == [0.0, 0.0]
+        assert w.set_input_derivatives(RATES, [[-4.0, 2.0]]) == OK
+        within(absolute_error(w.get(*inertial), [-4.0, 2.0, 0.5, -0.25]), 1e-13, "ramp, rad/s2 and rad/s")
+        within(absolute_error(w.by(0.125).get(*inertial), [-4.0, 2.0, 0.0, 0.0]), 1e-13, "its end, rad/s2 and rad/s")
+        w.put(psi_dot_guide=0.0, theta_dot_guide=0.0)
+        within(absolute_error(w.get(*inertial), 0.0), 1e-14, "once set, rad/s2 and rad/s")
+        at_rest = w.by(0.125).get(*inertial, "psi", "theta")
+        assert at_rest[:4] == [0.0] * 4 and w.by(0.125).get("psi", "theta") == at_rest[4:]
+
+
+HELD = {**LEANS, "phi_dot_start": 0.0, "s": 0.001}
+JUMP = {"psi_dot_guide": 3.0, "theta_dot_guide": 0.5}
+
+
+@formulations
+def test_a_jump_meets_the_loads_that_are_set_with_it(library: Library, formulation: int) -> None:
+    """As if they were in force before it: a brake holds the wheel that the jump alone would turn."""
+    for brake in (0.0, 3e4):
+        with library.wheel() as together, library.wheel() as before:
+            for w in (together, before):
+                w.start(**HELD, formulation=formulation).put(M_brake=3e4 - brake).by(0.01)
+            found = together.put(**JUMP, M_brake=brake).get(*ANSWERS)
+            assert before.put(M_brake=brake).by(0.0).put(**JUMP).get(*ANSWERS) == found
+            assert together.by(0.0).get(*ANSWERS) == found
+            assert (found[ANSWERS.index("omega_z")] == 0) == (brake > 0)
+
+
+@formulations
+@surfaces
+def test_a_jump_of_the_tilt_over_a_ground_that_pulls_turns_no_wheel(
+    library: Library, road: dict, formulation: int
+) -> None:
+    """A ground that presses turns it by s times the impulse: the partner."""
+    start = {**LEANS, **road, "s": 0.03, "keep_contact": True, "formulation": formulation}
+    for F_Z, pulls in ((500.0, True), (0.0, False)):
+        with library.wheel() as w:
+            w.start(**start).put(F_Z=F_Z).by(0.01)
+            assert (w.get("lambda_3")[0] < 0) == pulls
+            (spin,) = w.get("omega_z")
+            (turned,) = w.put(theta_dot_guide=1.5).get("omega_z")
+            assert (turned == spin) == pulls

@@ -116,6 +116,18 @@ def test_the_hint_about_rollback_changes_no_bit(wheel):
     assert w.bits() == other.bits()
 
 
+def test_each_change_and_each_transition_counts_as_one_restart(wheel):
+    """Of a wheel that is unfolded, the change that ends this is the first."""
+    w = wheel().start().to(0.5)
+    for k in range(4):
+        assert w.get("n_restarts", "n_events") == [k, 0]
+        w.put(F_X=1.0 + k).by(0.1)
+    for values in ({"s": 0.03}, {"mu_max": 0.45, "mu_slide": 0.4}, {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4}):
+        w = wheel(logging=True).start(**values).to(2.0)
+        restarts, events = w.get("n_restarts", "n_events")
+        assert restarts == events == len(w.texts()) > 2
+
+
 def test_counters_count_on_through_restarts(wheel):
     w = wheel().start(s=0.03)
     counts = np.array([w.to(t).get(*COUNTERS) for t in SECONDS])

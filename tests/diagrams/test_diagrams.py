@@ -29,9 +29,8 @@ def scene(s: float = 0.0, time: np.ndarray = TIME, **given: np.ndarray | float) 
     settings |= {n: given.pop(n) for n in [*given] if n in settings}
     motion = {"time": time, "theta": SWING, "X_O": SWING, "X_C": np.sin(TIME), "Y_C": TIME, "lambda_3": 200 * SWING}
     motion |= {"psi": TIME, "psi_dot": 2 / SWING**2, "phi_dot": -2 / SWING**3, "mu_required": SWING / 3}
-    motion |= {"X_O_dot": np.cos(TIME), "friction_mode": 1}
-    motion |= dict.fromkeys(("Y_O", "Y_O_dot", "lambda_x", "lambda_y", "slip_x", "slip_y", "contact_mode"), 0)
-    motion |= dict.fromkeys(("M_guide_1", "M_guide_2"), 0)
+    motion |= {"friction_mode": 1, "E": 50}
+    motion |= dict.fromkeys(("Y_O", "lambda_x", "lambda_y", "slip_x", "slip_y", "contact_mode"), 0)
     columns = {n: np.broadcast_to(np.asarray(x, dtype=float), len(TIME)) for n, x in (motion | given).items()}
     return Scene("friction" if s else "free", columns, settings, **fields)
 
@@ -161,51 +160,38 @@ def limit(one: Scene) -> np.ndarray:
     return dashed
 
 
-def locked() -> Scene:
-    """On its wheel carrier, locked at once; 8 m/s falls evenly, the spin four times as fast; it stands after 8 s."""
+def test_a_locked_wheel_has_position_energy_forces_with_their_limit_and_slip() -> None:
+    """On its wheel carrier; 8 m/s falls evenly, the spin four times as fast; it stands after 8 s."""
     v, rolling = np.maximum(8 - TIME, 0), np.maximum(8 - 4 * TIME, 0)
-    course = {"X_O_dot": v, "psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "psi_dot": 0}
+    course = {"psi": 0, "slip_x": v - rolling, "theta": np.pi / 2, "psi_dot": 0, "phi_dot": -rolling / 0.35}
     way = np.where(TIME < 8, 8 * TIME - TIME**2 / 2, 32)
-    limits = {"mu_max": 0.1, "mu_slide": 0.1}
-    return scene(guided=1, contact_mode=v > 0, X_O=way, lambda_3=200, lambda_x=-20 * (v > 0), **course, **limits)
-
-
-def test_a_locked_wheel_has_speeds_slip_ratio_forces_with_their_limit_and_distance() -> None:
-    one = locked()
-    assert shown(one) == ["speeds", "slip_ratio", "forces", "distance"]
-    rolling = np.maximum(8 - 4 * TIME, 0)
-    assert np.allclose(one.rolling_speed, rolling) and np.isnan(one.slip_ratio[TIME >= 8]).all()
-    said = caption(one, *paper.panels_of([one]))
-    assert "braking negative" in said and "guided = true" in said and "it is drawn from" not in said
-    assert labels(panels.draw_speeds, one) == [r"$-R\,\omega_z$", "$v$"]
+    force = {"mu_max": 0.1, "mu_slide": 0.1, "lambda_3": 200, "lambda_x": -20 * (v > 0)}
+    one = scene(guided=1, contact_mode=v > 0, X_O=way, E=10 * v**2, **course, **force)
+    assert shown(one) == ["position", "energy", "forces", "slip"]
+    assert "guided = true" in caption(one, *paper.panels_of([one]))
     assert labels(panels.draw_forces, one) == [r"$\lambda_x$", "$N$"]  # none to the left
-    assert labels(panels.draw_distance, one) == ["32 m"]
     assert limit(one) == pytest.approx(-20 * np.ones(len(TIME)))
 
 
-def test_a_steered_wheel_that_slides_out_has_path_velocities_side_force_and_the_moment_of_its_carrier() -> None:
+def test_a_steered_wheel_that_slides_out_has_path_side_force_and_slip() -> None:
     turn = {"psi": 0.5 * TIME, "psi_dot": 0.5, "theta": np.pi / 2, "phi_dot": -20.0, "slip_y": 0.3 * TIME}
-    turn |= {"X_O_dot": 8 * np.cos(0.5 * TIME), "Y_O_dot": 8 * np.sin(0.5 * TIME), "contact_mode": 1}
-    one = scene(guided=1, mu_max=0.3, mu_slide=0.25, lambda_3=200, lambda_y=50, M_guide_1=-60, **turn)
-    assert shown(one) == ["path", "velocities", "slip", "forces", "carrier"]
-    assert np.allclose(one.speed, 8) and np.allclose(one.sideways, 0)
-    assert labels(panels.draw_velocities, one) == [r"$-R\,\omega_z$ = $v_x$", "$v_y$"]
+    one = scene(guided=1, mu_max=0.3, mu_slide=0.25, lambda_3=200, lambda_y=50, contact_mode=1, **turn)
+    assert shown(one) == ["position", "path", "forces", "slip"]
     assert labels(panels.draw_forces, one) == [r"$\lambda_y$", "$N$"]
-    assert labels(panels.draw_carrier, one) == [panels.LETTER["M_guide_1"], panels.LETTER["M_guide_2"]]
     assert limit(one) == pytest.approx(0.25 * 200 * np.ones(len(TIME)))  # mu_slide while it slides
 
 
 def test_panels_without_content_are_left_out_and_forces_that_keep_their_values_stand_in_the_caption() -> None:
     """A vehicle's wheel straight ahead; partner: the paper's has all."""
     ahead = {"psi": 0.0, "theta": np.pi / 2, "psi_dot": 0.0, "phi_dot": -14.0, "lambda_3": 196.2, "mu_required": 0.01}
-    rolls, slows = scene(X_O_dot=5.0, **ahead), scene(0.004, X_O_dot=5 - 0.1 * TIME, **ahead)
-    assert shown(rolls) == ["distance"] and shown(rolls, slows) == ["speeds", "distance"]
+    rolls, slows = scene(X_O=5 * TIME, **ahead), scene(0.004, X_O=5 * TIME, E=50 - TIME, **ahead)
+    assert shown(rolls) == ["position"] and shown(rolls, slows) == ["position", "energy"]
     assert r"Throughout $N = 196.2$ N, and rolling needs $\mu = 0.01$." in " ".join(
         paper.caption([rolls], [paper.kept(rolls, paper.panels_of([rolls]))], 400.0, 7.5)
     )
     assert shown(scene()) == ["position", "tilt", "rates", "path", "ground"] and paper.kept(scene(), paper.PAPERS) == []
     assert shown(scene(X_O=0.0)) == ["tilt", "rates", "path", "ground"]
-    assert labels(panels.draw_speeds, rolls) == [r"$-R\,\omega_z$ = $v$"]
+    assert shown(scene(X_O=0.0, **ahead)) == ["position"]  # of a wheel that stands: an axis and its parameters
 
 
 def test_of_two_scenes_that_look_alike_one_is_drawn_and_its_caption_says_so() -> None:
@@ -213,7 +199,7 @@ def test_of_two_scenes_that_look_alike_one_is_drawn_and_its_caption_says_so() ->
     both = [scene(**fall), scene(0.03, **fall | {"theta": fall["theta"] + 1e-3 * np.sin(TIME)})]
     wanted = PICTURES(both, Path("results"))
     assert {tuple(one.name for one in scenes) for _, scenes, *_ in wanted} == {("friction",)}
-    assert "Without rolling friction the diagrams look alike." in caption(wanted[0][1][0])
+    assert "Without rolling resistance the diagrams look alike." in caption(wanted[0][1][0])
     apart = [both[0], scene(0.03, **fall | {"theta": 1.3 * np.cos(TIME / 8)})]
     assert PICTURES(apart, Path("results"))[0][1] == apart
 
@@ -325,8 +311,8 @@ def test_a_sheet_explains_once_what_both_scenes_have_and_no_capital_follows_a_co
     remarks = [panel.draw(style.figure_mm(80, 80).subplots(), one) for one in scenes]
     said = " ".join(paper.caption(scenes, [remarks[0], [*remarks[1], "thick: held"]], 175.0, 7.5))
     assert said.count("Purple at the bottom: it slides") == 1 == said.count("Thick: held")
-    assert said.index("Rolling friction: no transitions") < said.index("Thick") < said.index("Purple")
-    assert "friction: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling friction")
+    assert said.index("Rolling resistance: no transitions") < said.index("Thick") < said.index("Purple")
+    assert "resistance: it slides twice, at" in paper.paragraph(["it slides twice, at 1 m/s"], "No rolling resistance")
     assert not re.search(r": [A-Z]", said)
 
 

@@ -89,17 +89,3 @@ def test_the_interval_of_the_rows_follows_the_fastest_period_of_the_start(spin, 
     assert (values.interval(own, 0.01), values.interval(own | {"guided": 1.0}, 0.01)) == (free, carried)
     fast = upright_stiffness(PAPER, 1e4) ** 0.5
     within(relative_error(values.nutation(own, 1e4), fast), 1e-6, "nutation at high spin, relative")
-
-
-def test_a_turn_that_slides_out_is_drawn_with_its_velocities_side_force_and_carrier(library: Library) -> None:
-    """Steered at 0.5 rad/s at 10 m/s, which needs mu = 0.51; partner: with 0.6 it does not slide."""
-    turn = UPRIGHT | {"guided": 1, "phi_dot_start": -10 / 0.35, "psi_dot_guide": 0.5, "s": 0.0}
-    one, grips = (reading.read(library, "free", turn | {"mu_max": mu, "mu_slide": 0.25}, 10.0) for mu in (0.3, 0.6))
-    panels = [panel.name for panel in paper.panels_of([one])]
-    assert panels == ["path", "velocities", "slip", "forces", "carrier"]
-    found = library.simulate(one["time"], **turn, mu_max=0.3, mu_slide=0.25)
-    for name, velocity in (("v_x", one.speed), ("v_y", one.sideways)):
-        within(np.abs(velocity - found[name]).max(), 1e-9, f"{name} off the wheel's own, m/s")
-    within(abs(np.hypot(one["lambda_x"][1], one["lambda_y"][1]) - 0.25 * 20 * 9.81), 1e-6, "force of the slide, N")
-    assert one.slides.any() and not grips.slides.any()
-    within(abs(grips["M_guide_1"][5] + (1.8 + 20 * 0.35**2) * 10 / 0.35 * 0.5), 1e-9, "moment in a steady turn, N m")

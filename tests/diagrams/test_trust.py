@@ -16,7 +16,7 @@ from wheelfmu.fmu.driver import HEADLINE
 from wheelfmu.fmu.paths import build_folder
 from wheelfmu.truth import sliding
 from wheelfmu.truth.errors import by_instant
-from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.measure import transitions
 from wheelfmu.truth.scenes import SCENES, Scene
 from wheelfmu.truth.trust import DEFAULT, ROUNDING, Motion, Wheel, trust
 
@@ -87,7 +87,7 @@ def test_another_solver_judges_and_where_it_is_the_same_engine_the_line_says_so(
     times = np.linspace(0, 2, 21)
     said = trust(wheel.motion(start, times, DEFAULT), wheel.judge(start, times)).said("A")
     assert f" of the range by {solver}" in said
-    assert ("; slides and stiff layers are the same engine's" in said) == shared
+    assert ("; slides and boundary layers are solved by the same solver" in said) == shared
 
 
 def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
@@ -103,7 +103,7 @@ def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel:
 
 
 def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
-    want = read_table("paper_friction_events")["t"][1:]
+    want = transitions()[1:, 0]
     times = np.linspace(0, 10, 1001)
     run, truth = wheel.motion({"s": "0.03"}, times, 1e-6), wheel.judge({"s": "0.03"}, times)
     found = trust(run, truth)
@@ -174,7 +174,7 @@ def test_the_race_of_all_methods_is_a_picture_and_a_table(wheel: Wheel, tmp_path
     found = races.measured(wheel, given, times, np.ones(4))
     pictures, save = [], style.save_png
     monkeypatch.setattr(style, "save_png", lambda figure, path: pictures.append(figure) or save(figure, path))
-    races.write({"Rolling friction": found}, tmp_path)
+    races.write({"Rolling resistance": found}, tmp_path)
     header, *rows = (tmp_path / "error_time.csv").read_text().splitlines()
     assert header == "scene,method,tolerance,error,median_us,note" and len(rows) == 2 * len(races.METHODS)
     errors = {tuple(row.split(",")[1:3]): float(row.split(",")[3]) for row in rows}

@@ -11,7 +11,7 @@ from ctypes import byref, c_double
 
 import numpy as np
 import pytest
-from support.bounds import beyond, within
+from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu import equations as eq
 from wheelfmu.fmu.paths import ROOT, build_folder
@@ -82,3 +82,16 @@ def test_those_of_the_equations_are_those_of_the_system_but_for_the_last_digit()
         within(units(found, known(x)), 2, f"{name} beside the system's, units in the last place")
         beyond(units(found, known(np.nextafter(x, np.inf))), 2, f"{name} of the next double")
     assert all(math.isnan(getattr(sines(value), name)) for value in (math.inf, math.nan) for name in ("sine", "cosine"))
+
+
+def test_an_angle_less_whole_turns_has_its_sine_and_cosine_to_the_last_digit_after_any_turns():
+    less = eq.LIBRARY.wheel_less_turns
+    less.restype, less.argtypes = c_double, [c_double]
+    random = np.random.default_rng(4)
+    far = 10.0 ** random.uniform(-3, 12, 2000) * random.choice([-1, 1], 2000)
+    home = np.array([less(x) for x in far])
+    within(np.abs(home).max(), np.pi * (1 + EPSILON), "angle, rad")
+    sines = [np.array([f(x) for x in angles]) for angles in (far, home) for f in (math.sin, math.cos)]
+    within(np.abs(np.subtract(sines[:2], sines[2:])).max(), 4 * EPSILON, "sine and cosine apart")
+    rounded = np.remainder(far, 2 * np.pi)  # the partner: 2 pi as a double
+    beyond(np.abs(np.sin(rounded) - sines[0]).max(), 1e-6, "sine of the angle less rounded turns apart")

@@ -84,7 +84,8 @@ class Rows:
             set_rolling(self.scenes["wheel"], self.motions),
             eq.start_each(eq.REDUCED, self.scenes, self.motions)[:, 3],
         )
-        q[:, 11] = spin - self.motions["psi_dot"] * np.cos(self.motions["theta"])  # a narrow law magnifies its last bit
+        # A narrow law magnifies its last bit.
+        q[:, 11] = spin - self.motions["psi_dot"] * np.cos(self.motions["theta"])
         accelerations = solved(Paper(self.scenes["wheel"], q), self.scenes)[:, :6]
         moved = q + 1j * STEP * np.hstack([q[:, 6:], accelerations])
         loads = {part: load[part] + 1j * STEP * change[part] for part in ("F", "M", "brake")}

@@ -409,3 +409,47 @@ def test_a_carrier_that_turns_by_its_states_has_the_forces_of_one_that_is_steere
         still = exchange(library, **start)
         beyond(np.abs(np.array(still.get(*outputs)) - want).max(), 10, "forces and moments of one that does not turn")
         still.close()
+
+
+# ---- readings between calls ----
+
+
+def test_a_value_that_was_read_follows_the_states_that_are_set_next(library: Library) -> None:
+    """By one call alone: no other of the kind is between the two readings."""
+    names = ("theta", "X_O", "lambda_3", "psi_ddot", "E")
+    for state in STATES[2:]:  # the place alone moves neither force nor acceleration
+        with at_odd(library, s=0.02) as wheel, at_odd(library, s=0.02) as fresh:
+            before, x = wheel.get(*names), ODD + 0.1 * (np.array(STATES) == state)
+            assert wheel.ask("SetContinuousStates", x, len(x)) == OK
+            fresh.place(0.3, x)
+            assert wheel.get(*names) == fresh.get(*names)
+            assert wheel.get(*names) != before or state in ("psi", "phi")
+
+
+def test_a_reading_has_the_law_before_an_input_until_the_event_mode_decides_and_then_the_new_one(library) -> None:
+    """A held wheel: the moment that holds it is of any size, and M_3 = 50 N m is beyond s N."""
+    names = ("friction_mode", "omega_z_dot", "tau")
+    with exchange(library, s=0.03, **AT_REST) as wheel:
+        assert wheel.get("friction_mode") == [0]
+        assert wheel.put(M_3=50.0).get(*names) == pytest.approx([0, 0.0, -50.0])
+        assert wheel.derivatives()[-1] == 0 and wheel.indicator("spin_changes") < 0
+        assert wheel.enterEventMode() == OK
+        assert wheel.put(M_3=51.0).get(*names) == pytest.approx([0, 0.0, -51.0])
+        wheel.decide()
+        tau = -0.03 * WEIGHT
+        assert wheel.get(*names) == pytest.approx([1, (51.0 + tau) / (1.8 + 20 * 0.35**2), tau])
+
+
+def test_each_question_of_a_solver_is_counted_when_it_is_asked(library: Library) -> None:
+    with at_odd(library, s=0.02) as wheel:
+        for ask, counted in ((wheel.derivatives, [1, 0]), (wheel.indicators, [0, 1]), (wheel.wants_event, [0, 1])):
+            before = wheel.get("n_rhs", "n_roots")
+            ask()
+            assert np.subtract(wheel.get("n_rhs", "n_roots"), before).tolist() == counted
+
+
+def test_a_brake_that_is_not_in_use_has_no_moment_until_an_event_gives_it_a_law(library: Library) -> None:
+    with exchange(library) as wheel:
+        assert not wheel.jacobian(["tau", "tau_brake", "omega_z_dot"], ["M_brake"]).any()
+        wheel.put(M_brake=1.0).event()
+        assert wheel.jacobian(["tau_brake"], ["M_brake"]) == pytest.approx(1)  # omega_z < 0

@@ -1,6 +1,6 @@
-"""Model exchange: the wheel moved by solvers that are not ours, with our events, against tables and closed forms.
+"""Model exchange: the wheel moved by solvers that are not ours, with our events, against reference and closed forms.
 
-SciPy's DOP853 with the events of support/exchange.py, and FMPy's CVODE. SI units.
+SciPy's DOP853 with the events of truth/exchange.py, and FMPy's CVODE. SI units.
 """
 
 import re
@@ -16,10 +16,9 @@ from wheelfmu.truth.closed_forms import fall_time, rolling_inertia
 from wheelfmu.truth.errors import range_error, range_errors
 from wheelfmu.truth.exact_motions import UPRIGHT
 from wheelfmu.truth.exchange import Run, exchange, no_inputs
-from wheelfmu.truth.measure import FRICTION, instants_error
+from wheelfmu.truth.measure import FRICTION, instants_error, paper, transitions
 from wheelfmu.truth.motion import Library, start_values
 from wheelfmu.truth.reference import Start, Wheel, solve
-from wheelfmu.truth.reference.tables import read_table
 from wheelfmu.truth.scenes import PULLED, PUSH
 
 RIM = start_values(Wheel(J_x=0.05, J_y=0.05, J_z=0.1), Start(theta=1.4, phi_dot=0.0))
@@ -42,10 +41,10 @@ MODES = {"stick": 0, "positive.": 1, "negative.": -1}
 
 @pytest.mark.parametrize("scene", FRICTION)
 def test_the_papers_scenes_and_all_37_transitions_come_out_of_another_solver(library: Library, scene: str) -> None:
-    want, s = read_table(f"paper_{scene}"), FRICTION[scene]
+    want, s = paper(scene), FRICTION[scene]
 
     def errors(s: float, rtol: float = 1e-11) -> tuple[float, float]:
-        run, got, sentences = moved(library, list(want["t"]), rtol, s=s)
+        run, got, sentences = moved(library, list(want.t), rtol, s=s)
         modes = [next(mode for word, mode in MODES.items() if word in sentence) for sentence in sentences]
         late = instants_error(list(zip(run.events, modes, strict=True))) if scene == "friction" else 0.0
         return range_error(got, want, HEADLINE), late
@@ -61,7 +60,7 @@ def test_the_papers_scenes_and_all_37_transitions_come_out_of_another_solver(lib
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10])
 def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(library, tolerance: float, capfd) -> None:
-    want = read_table("paper_friction")
+    want = paper("friction")
     grid = {"stop_time": 10, "output_interval": 0.1, "relative_tolerance": tolerance, "record_events": False}
     how = {"fmi_type": "ModelExchange", "start_values": {"s": 0.03}, "output": [*HEADLINE], "debug_logging": True}
     run = simulate_fmu(library.folder, **grid, **how)
@@ -69,7 +68,7 @@ def test_fmpys_cvode_finds_them_too_within_some_thousand_of_its_tolerances(libra
     # FMPy prints the sentences. (Its argument `logger` would stay in use, freed, by all later runs of this process.)
     found = [float(t) for t in re.findall(r"^\[OK\] t = (\S+) s", capfd.readouterr().out, re.M)]
     assert len(found) == 37
-    late = np.abs(np.array(found) - read_table("paper_friction_events")["t"][1:]).max()
+    late = np.abs(np.array(found) - transitions()[1:, 0]).max()
     within(late / tolerance, 1e4, "instants of the transitions over tolerance, s")
 
 

@@ -62,7 +62,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
   for (int i = 0; i < count; ++i) wheel.demand.parameters[references[i]] = values[i];
   wheel.demand.tolerance = tolerance;
   wheel.setup = wheel::setup_of(wheel.demand);
-  wheel::apply(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
+  wheel::enforce(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
   return probe;
 }
 
@@ -75,10 +75,10 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   place = at, size = so_much, added = by;
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
-  const auto kind = probe->orbit.build(problem, setup.tolerance, wheel::pass_on_orbit, setup.start, probe->solver);
-  const bool starts = kind != orbit::Orbit::Result::refused && probe->orbit.enter(problem, setup.start, solver::never);
+  const orbit::Motion motion = {problem, setup.tolerance, wheel::follow_on_orbit, setup.start, solver::never};
+  const bool entered = probe->orbit.enter(motion, false, probe->solver);
   probe->wheel.run.in_force = at_start;
-  return starts ? static_cast<int>(kind) : 0;
+  return entered ? static_cast<int>(probe->orbit.result()) : 0;
 }
 
 // States at `count` instants, 8 numbers each, psi, phi, X_O and Y_O whole; and N.

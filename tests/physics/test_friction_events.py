@@ -9,38 +9,36 @@ from support.bounds import absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import OK
 from wheelfmu.truth.exchange import loaded
-from wheelfmu.truth.measure import instants, instants_error
+from wheelfmu.truth.measure import instants, instants_error, transitions
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.reference.tables import read_table
-from wheelfmu.truth.requirements import asked
 from wheelfmu.truth.scenes import Scene
 
-EVENTS = read_table("paper_friction_events")
+INSTANTS, MODES = transitions().T
 
 
 def test_all_37_transitions_are_found_at_their_instants(library: Library) -> None:
     assert len(instants(library)) == 37
-    within(instants_error(instants(library)), asked("accuracy", "instants"), "instants of the transitions, s")
+    within(instants_error(instants(library)), 3e-8, "instants of the transitions, s")
     beyond(instants_error(instants(library, s=0.03 * (1 + 1e-5))), 1e-6, "instants with another s, s")
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-10, 1e-13])
 def test_no_transition_is_lost_or_invented_at_any_tolerance(library: Library, tolerance: float) -> None:
     modes = [mode for _, mode in instants(library, tolerance)]
-    assert modes == EVENTS["mode"][1:].tolist()
+    assert modes == MODES[1:].tolist()
     assert [mode for _, mode in instants(library, tolerance, s=0.05)] != modes
 
 
 def test_the_instants_converge_with_the_tolerance(library: Library) -> None:
-    within(instants_error(instants(library, 1e-10)), 5e-9, "instants of the transitions, s")  # the table's last digit
+    within(instants_error(instants(library, 1e-10)), 5e-9, "instants of the transitions, s")
     beyond(instants_error(instants(library, 1e-5)), 1e-6, "instants at a loose tolerance, s")
 
 
 def mode_error(library: Library, shift: float) -> int:
     """How many of 37 pairs of readings, 1e-7 s before and after a transition (shifted), show another mode."""
-    times = np.sort(np.concatenate([EVENTS["t"][1:] - 1e-7, EVENTS["t"][1:] + 1e-7])) + shift
+    times = np.sort(np.concatenate([INSTANTS[1:] - 1e-7, INSTANTS[1:] + 1e-7])) + shift
     modes = library.simulate([0.0, *times], s=0.03)["friction_mode"][1:].reshape(-1, 2)
-    expected = np.column_stack([EVENTS["mode"][:-1], EVENTS["mode"][1:]])
+    expected = np.column_stack([MODES[:-1], MODES[1:]])
     return int((modes != expected).any(axis=1).sum())
 
 

@@ -1,4 +1,4 @@
-"""The reference solution judged: its search for events, integral laws, the trusted tables, rolling friction.
+"""The reference solution judged: its search for events, integral laws, the benchmark, rolling friction.
 
 Every bound has a partner that breaks an equation, a parameter or a law, and must exceed it. Closed forms judge the
 FMU, which is compared with this reference.
@@ -17,10 +17,10 @@ from wheelfmu.truth import scenes
 from wheelfmu.truth.cases import CASES
 from wheelfmu.truth.errors import instants_error as error_of_instants
 from wheelfmu.truth.errors import kind_errors
+from wheelfmu.truth.problems import PROBLEMS, by_reference, errors, transitions
 from wheelfmu.truth.reference import Inputs, Road, Solution, Start, Wheel, newton_euler, solve
 from wheelfmu.truth.reference.crossing import NODES, first_fall
-from wheelfmu.truth.reference.judge import contact_gap, energy_gap, impulse_gap, table_error
-from wheelfmu.truth.reference.tables import read_transitions
+from wheelfmu.truth.reference.judge import contact_gap, energy_gap, impulse_gap
 from wheelfmu.truth.scenes import GENERAL
 from wheelfmu.truth.scenes import SCENES as ROLLING
 from wheelfmu.truth.sliding import SLIDES
@@ -121,51 +121,46 @@ def test_all_loads_account_for_momentum_and_angular_momentum_at_general_inertia(
     beyond(impulse_gap(wheel, PUSHED, swapped, duration, road), 0.1, "momenta with swapped inertia, N s, N m s")
 
 
-# ---- the trusted tables of the paper's two scenes, all transitions included ----
+# ---- the values of docs/benchmark.md, by Taylor's method in quadruple precision, all transitions included ----
 
 
 FRICTION = Wheel(s=0.03)
-PAPER = {"paper_free": Wheel(), "paper_friction": FRICTION}
-both_tables = pytest.mark.parametrize("table", PAPER)
+both_scenes = pytest.mark.parametrize("name", ["free", "friction"])
 
 
-def order(table: str) -> float:
+def benchmark_error(name: str, rtol: float) -> float:
+    return errors(name, by_reference(PROBLEMS[name], rtol))[0]
+
+
+def order(name: str) -> float:
     """Decades of error per decade of rtol, from 1e-6 to 1e-10."""
-    coarse, fine = (table_error(table, PAPER[table], rtol) for rtol in (1e-6, 1e-10))
-    return np.log10(coarse / fine) / 4
+    return np.log10(benchmark_error(name, 1e-6) / benchmark_error(name, 1e-10)) / 4
 
 
-@both_tables
-def test_the_trusted_tables_are_made_again(table: str) -> None:
-    # The rounding to 12 digits. Other processors and other versions of SciPy round otherwise.
-    within(table_error(table, PAPER[table]), 1e-10, "error of a column, relative")
+@both_scenes
+def test_the_error_falls_in_proportion_to_the_tolerance(name: str) -> None:
+    within(abs(order(name) - 1), 0.15, "order of convergence less 1")
 
 
-@both_tables
-def test_the_error_falls_in_proportion_to_the_tolerance(table: str) -> None:
-    within(abs(order(table) - 1), 0.15, "order of convergence less 1")
-
-
-@both_tables
+@both_scenes
 @pytest.mark.usefixtures("wrong_gyroscopic_sign")
-def test_a_wrong_gyroscopic_sign_neither_meets_nor_approaches_the_tables(table: str) -> None:
-    beyond(table_error(table, PAPER[table], rtol=1e-9), 0.2, "error of a column, relative")
-    within(abs(order(table)), 5e-5, "order of convergence")
-
-
-def instants_error(s: float) -> float:
-    return error_of_instants(solve(Wheel(s=s), Start(), [0.0, 10.0]).events, read_transitions())
+def test_a_wrong_gyroscopic_sign_neither_meets_nor_approaches_the_benchmark(name: str) -> None:
+    beyond(benchmark_error(name, 1e-9), 0.2, "error / range")
+    within(abs(order(name)), 5e-5, "order of convergence")
 
 
 def test_all_transitions_of_the_friction_scene_are_at_their_instants() -> None:
-    within(instants_error(0.03), 6e-11, "instants of the transitions, s")  # the rounding of the table
-    beyond(instants_error(0.03 * (1 + 1e-6)), 1e-6, "instants with another s, s")
+    def late(s: float) -> float:
+        return error_of_instants(solve(Wheel(s=s), Start(), [0.0, 10.0]).events[1:], transitions("friction"))
+
+    within(late(0.03), 2e-11, "instants of the transitions, s")
+    beyond(late(0.03 * (1 + 1e-6)), 1e-6, "instants with another s, s")
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 def test_no_transition_is_lost_at_a_coarse_tolerance(rtol: float) -> None:
-    events = solve(FRICTION, Start(), [0.0, 10.0], rtol=rtol).events
-    assert [mode for _, mode in events] == [mode for _, mode in read_transitions()]
+    events = solve(FRICTION, Start(), [0.0, 10.0], rtol=rtol).events[1:]
+    assert [mode for _, mode in events] == [mode for _, mode in transitions("friction")]
 
 
 @pytest.mark.parametrize("scene", ["friction", "heavy friction"])

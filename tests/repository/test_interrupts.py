@@ -1,11 +1,12 @@
-"""Ctrl-C on a terminal ends a command and all that it has started, with status 130 and without a false word. What a
-killed build leaves spoils none."""
+"""Ctrl-C on a terminal ends a command and all that it has started, with status 130 and without a false word; any other
+signal n with 128 + n, unless it is ignored. What a killed build leaves spoils none."""
 
 import os
 import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from io import StringIO
 from pathlib import Path
 
@@ -38,7 +39,10 @@ def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[
 
     Its exit status, what it printed, and how long it took to end."""
     printed = StringIO()
-    child = pexpect.spawn(words[0], words[1:], env=os.environ | {MARK: mark}, timeout=600, encoding="utf-8")
+    try:
+        child = pexpect.spawn(words[0], words[1:], env=os.environ | {MARK: mark}, timeout=600, encoding="utf-8")
+    except OSError as fault:  # as in a container without /dev/pts
+        pytest.skip(f"There is no terminal for the test: {fault}.")
     child.logfile_read = printed
     if until:
         child.expect_exact(until)
@@ -71,6 +75,63 @@ def test_a_command_ends_whole_at_ctrl_c(tmp_path: Path, line: str, until: str, d
         time.sleep(0.2)
         left &= unfinished()
     assert not left
+
+
+# A command that works until the file `go` is there, in the place of ./scripts/help.
+WORKS = """
+import sys, time
+from pathlib import Path
+from types import ModuleType
+from wheelfmu import __main__
+
+def main(_words):
+    print("at work", flush=True)
+    while not Path("go").exists():
+        time.sleep(0.01)
+
+module = ModuleType("works")
+module.reads, module.main, module.STAYS = lambda words: words, main, True
+__main__.module_of = lambda name: module
+sys.exit(__main__.main("help"))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def test_a_signal_ends_a_command_with_its_status_unless_it_is_ignored_from_the_start(tmp_path: Path, number) -> None:
+    """Ignored: SIGHUP by nohup, SIGINT of a script's job in the background. Partner: the same command that heeds it."""
+    outcome = {}
+    for action in (signal.SIG_IGN, signal.SIG_DFL):
+        (tmp_path / "go").unlink(missing_ok=True)
+        how = {"cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        how["preexec_fn"] = partial(signal.signal, number, action)
+        with subprocess.Popen([sys.executable, "-c", WORKS], **how) as command:
+            assert command.stdout and command.stdout.readline() == "at work\n"
+            command.send_signal(number)
+            if action == signal.SIG_IGN:
+                (tmp_path / "go").touch()
+            outcome[action] = (command.wait(timeout=600), command.communicate()[1])
+    assert outcome[signal.SIG_IGN] == (0, "")
+    assert outcome[signal.SIG_DFL] == (128 + number, "\nhelp: interrupted.\n")
+
+
+@pytest.mark.parametrize("way", ["spawn", "forkserver"])  # the latter is the way of Python 3.14
+def test_processes_of_python_end_with_a_command_at_once_and_without_a_word(tmp_path: Path, way: str) -> None:
+    program = f"""
+import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from wheelfmu.commands import processes
+
+if __name__ == "__main__":
+    pool = ProcessPoolExecutor(1, mp_context=get_context({way!r}))
+    pool.submit(abs, -1).result()
+    begin = time.monotonic()
+    processes.end_all()
+    assert time.monotonic() - begin < processes.PATIENCE / 2 and not processes.running()
+"""
+    (tmp_path / "program.py").write_text(program)
+    done = subprocess.run([sys.executable, tmp_path / "program.py"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_what_a_killed_build_has_begun_is_made_again(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from wheelfmu.fmu.description.measuring import measured
 from wheelfmu.fmu.description.numbering import numbered, with_event_indicators
 from wheelfmu.fmu.driver import FMU2Wheel
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import variables
 from wheelfmu.truth import exchange as exchanging
 from wheelfmu.truth.motion import Library, Run
 
@@ -181,6 +182,17 @@ def test_the_parameter_does_what_its_recipe_says(patched: Patched) -> None:
 
     with turned(1.5, 0.25) as wheel, turned(1.75, 0.0) as same, turned(1.5, 0.0) as other:
         assert wheel.bits() == same.bits() != other.bits()
+
+
+def test_new_variables_have_the_next_references_and_no_other_moves(patched: Patched) -> None:
+    old, new = (
+        {name: v.reference for name, v in variables((folder / "modelDescription.xml").read_bytes()).items()}
+        for folder in (ROOT, patched.root)
+    )
+    assert old == {name: new[name] for name in old}
+    added = {name: reference for name, reference in new.items() if name not in old}
+    assert added.keys() == {"J_hub", "N_max", "P_brake"}
+    assert sorted(added.values()) == [max(old.values()) + k for k in (1, 2, 3)]
 
 
 def test_the_page_lists_the_message_of_the_parameter_as_the_code_has_it() -> None:

@@ -26,23 +26,46 @@ def test_an_older_python_is_named(checkout: Path, tmp_path: Path) -> None:
     assert said.startswith("run: Python 3.11 or later is needed; Python 3.10.12 is the first")
 
 
-def test_a_linked_environment_is_refused_and_keeps_its_files(checkout: Path, tmp_path: Path) -> None:
-    (tmp_path / "mine.txt").touch()
-    (checkout / ".venv").symlink_to(tmp_path)
-    said = refused(["bash", "scripts/run"], checkout)
+def test_an_environment_that_does_not_fit_is_refused_and_keeps_its_files(checkout: Path, tmp_path: Path) -> None:
+    """Of another Python, of another place, a link to somebody's folder: none is emptied."""
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv"], check=True)
+    (tmp_path / "venv" / "bin" / "pip").touch()
+    (checkout / ".venv").symlink_to(tmp_path / "venv")
+    python = f"Python {sys.version_info.major}.{sys.version_info.minor}"
+    for made in (f"{checkout} Python 3.10.12", f"/elsewhere {python}"):
+        (tmp_path / "venv" / "place").write_text(made)
+        said = refused(["bash", "scripts/run"], checkout)
+        assert said == (
+            f"run: .venv was made for {made}, and this is {checkout} {python}. "
+            "Delete it (rm -r .venv), and the next command makes it anew.\n"
+        )
+    (tmp_path / "venv" / "bin" / "python").unlink()
+    assert refused(["bash", "scripts/run"], checkout).startswith("run: .venv has no Python that runs. Delete it (rm -r")
     (checkout / ".venv").unlink()
-    assert said.startswith("run: .venv is a symbolic link") and (tmp_path / "mine.txt").exists()
+    assert (tmp_path / "venv" / "place").exists()
+
+
+def test_a_place_that_cannot_be_written_is_named(checkout: Path) -> None:
+    shutil.rmtree(checkout / "build", ignore_errors=True)
+    (checkout / "build").touch()
+    said = refused(["bash", "scripts/run"], checkout)
+    (checkout / "build").unlink()
+    assert said == f"run: {checkout / 'build'}: File exists.\n"
 
 
 def test_pip_alone_installs_the_lock_file_where_uv_cannot_be_installed(tmp_path: Path) -> None:
-    """Partner: the second set-up would fail, were anything installed again. The third finds what a killed one leaves: a
-    package without its end."""
+    """Partner: the second set-up would fail, were anything installed again, though another Python comes first in PATH.
+    The third finds what a killed one leaves: a package without its end."""
     copy, constraint = tmp_path / "copy", tmp_path / "no_uv.txt"
     copy.mkdir()
     copy_checkout(copy)
     lock = copy / "requirements.lock"
-    lock.write_text("".join(re.findall(r"^(?:tabulate|uv)==.*\n(?: .*\n)+", lock.read_text(), re.MULTILINE)))
+    lock.write_text("".join(re.findall(r"^(?:psutil|tabulate|uv)==.*\n(?: .*\n)+", lock.read_text(), re.MULTILINE)))
     constraint.write_text("uv<0\n")
+    other = tmp_path / "bin" / "python3"
+    other.parent.mkdir()
+    other.write_text("#!/bin/sh\necho Python 3.10.12\nexit 1\n")
+    other.chmod(0o755)
 
     def set_up(**more: str) -> str:
         environment = os.environ | {"PIP_CONSTRAINT": str(constraint)} | more
@@ -50,7 +73,8 @@ def test_pip_alone_installs_the_lock_file_where_uv_cannot_be_installed(tmp_path:
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    assert (set_up(), set_up(PIP_NO_INDEX="1")) == ("Installing Python packages into .venv\n", "")
+    later = {"PIP_NO_INDEX": "1", "PATH": f"{other.parent}:{os.environ['PATH']}"}
+    assert (set_up(), set_up(**later)) == ("Installing Python packages into .venv\n", "")
     programs = {path.name for path in (copy / ".venv" / "bin").iterdir()}
     assert "tabulate" in programs and "uv" not in programs
     packages = "lib/*/site-packages"

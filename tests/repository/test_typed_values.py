@@ -1,163 +1,64 @@
-"""What a user types is taken as typed, or refused: each kind of fault, over all commands that read it."""
+"""What a user types after ./scripts/run is taken as typed, or refused; its results are of one run."""
 
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
+from support.typed import check_refused, check_taken
 
-from wheelfmu.fmu.csv_file import read_table
+from wheelfmu.fmu.outputs import fresh
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.progress import bar
-from wheelfmu.fmu.values import Fault
 
-MOTION = "time,X_O\n0,0\n1,1\n"
-# For each kind: words of the refusal, and what is typed after each command.
-FAULTS = {
-    "a decimal comma": (
-        "the decimal mark is a point",
-        "run v=18,5",
-        "study --vary theta_start=1,1:1,2:3",
-        "study --vary s=0,01,0,02",
-        "study --vary s=0,0.1 --set m=12,5",
-        "study --vary s=0,0.1 --stop-time 2,5",
-        "example car v=18,5",
-        "example balance k_theta=2,5",
-        "view motion.csv --r_0 0,3 --r 0,05",
-    ),
-    "no number": (
-        "is not a number",
-        "run v=fast",
-        "run m=1e999",
-        "study --vary s=0,1e999",
-        "study --vary s=0,,1",
-        "study --vary s=0,0.1 --set m=heavy",
-        "study --vary s=0,0.1 --interval soon",
-        "example car v=fast",
-        "view motion.csv --slope steep",
-    ),
-    "not one of the words, or a part of a whole number": (
-        "is not one of",
-        "run formulation=2.7",
-        "study --vary formulation=1:3:5",
-        "study --vary s=0,0.1 --set formulation=2.7",
-        "study --vary keep_contact=true,maybe",
-        "example car path=1.5",
-        "example suspended follow=0.5",
-        "example car manoeuvre=loop",
-    ),
-    "beyond a limit": (
-        "must be",
-        "run theta_start=200deg",
-        "study --vary s=-1:1:3",
-        "study --vary s=0,0.1 --set m=-5",
-        "example car s=-1",
-        "example car slope=95deg",
-        "view motion.csv --slope 95deg",
-        "view motion.csv --r_0 -1 --r 0",
-    ),
-    "a name that is not there": (
-        "Do you mean ",
-        "run thetastart=1",
-        "run mu=0.4",
-        "run coni",
-        "run wheel=coni",
-        "run body=tours",
-        "study --vary mu=0.4",
-        "study --vary brake=60",
-        "study --vary s=0,0.1 --set masss=1",
-        "study --vary s=0,0.1 --measure a=max(tetha)",
-        "study --vary s=0,0.1 --history Thetta",
-        "study --vary s=0,0.1 --wheel coni",
-        "study --vary s=0,0.1 --body tours",
-        "example cra",
-        "example car vv=5",
-        "example car manoeuvre=lanes",
-        "report sped",
-    ),
-    "given twice": (
-        "given twice, as ",
-        "run s=0.01 s=0.02",
-        "run coin bicycle_wheel",
-        "run coin wheel=coin",
-        "run body=torus disc",
-        "study --vary s=0,0.1 --vary s=1,2",
-        "study --vary s=0,0.1 --set m=10 --set m=30",
-        "study --vary s=0,0.1 --measure a=theta --measure a=lowest",
-        "study --vary s=0,0.1 --out a.zarr --out b.zarr",
-        "study --vary s=0,0.1 --stop-time 1 --stop-time 2",
-        "example car v=3 v=4",
-        "view motion.csv --title a --title b",
-    ),
-    "an option that is cut short": (
-        "unrecognized arguments",
-        "study --vary s=0,0.1 --over",
-        "report speed --pub",
-    ),
-    "neither a name nor a value": (
-        "of the form",
-        "study --vary s=0,0.1 --set m",
-        "study --vary =1",
-        "study --vary s=0,0.1 --measure low=",
-        "example car v",
-    ),
-    "a file that is read": ("is read", "view motion.csv --output motion.csv", "view motion.csv -o ./motion.csv"),
-    "a file of somebody else": ("is not of this command", "view motion.csv --output thesis.html"),
+# What is typed, and words of the refusal. Tests of the other commands are beside them.
+REFUSED = {
+    "run v=18,5": "the decimal mark is a point",
+    "run v=fast": "is not a number",
+    "run m=1e999": "is not a number",
+    "run formulation=2.7": "is not one of",
+    "run theta_start=200deg": "must be",
+    "run thetastart=1": "Do you mean ",
+    "run mu=0.4": "Do you mean ",
+    "run coni": "Do you mean ",
+    "run wheel=coni": "Do you mean ",
+    "run body=tours": "Do you mean ",
+    "run s=0.01 s=0.02": "given twice, as ",
+    "run coin bicycle_wheel": "given twice, as ",
+    "run coin wheel=coin": "given twice, as ",
+    "run body=torus disc": "given twice, as ",
+    "run theta=1": "theta_start",
+    "run slope=-8deg": "slope_direction",
+    "run s": "neither name=value nor a preset",
+    "run s=0": "above 0",
+    "run m=3m": "kg or g",
+    "run v=3furlong": "it takes no unit but m/s or km/h",
+    "run hopp": "hoop",
+    "run method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)",
+    "run friction_law=0": "1 (exact), 2 (",
+    "run output_interval=20": "too long",
+    "run wheel=tank": "There is no wheel",
+    "run slope_direction=10%": "rad or deg",
+    "run body=ball": "There is no body",
+    "run v=3 phi_dot_start=-2": "phi_dot_start follows from v",
+    "run body=torus m=12kg J_z=1": "J_z follows from m, r_0 and r with body=torus",
 }
-# Of ./scripts/run, each with its words.
-OF_RUN = {"theta=1": "theta_start", "slope=-8deg": "slope_direction", "s": "neither name=value nor a preset"}
-OF_RUN |= {"s=0": "above 0", "m=3m": "kg or g", "v=3furlong": "it takes no unit but m/s or km/h", "hopp": "hoop"}
-OF_RUN |= {"method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)", "friction_law=0": "1 (exact), 2 ("}
-OF_RUN |= {"output_interval=20": "too long", "wheel=tank": "There is no wheel", "slope_direction=10%": "rad or deg"}
-OF_RUN |= {"body=ball": "There is no body", "v=3 phi_dot_start=-2": "phi_dot_start follows from v"}
-OF_RUN |= {"body=torus m=12kg J_z=1": "J_z follows from m, r_0 and r with body=torus"}
-# Of ./scripts/study.
-OF_STUDY = {"--vary s=0:1:one": "write --vary NAME=1,2,3 or NAME=first:last:count", "": "Which wheels? Give an example"}
-OF_STUDY |= {
-    "fate": "the examples are fates, grip, uptime. Do you mean fates?",
-    "--body ball --vary s=0,1": "torus, disc, hoop",
-}
-OF_STUDY |= {"--body disc --vary J_z=1,2": "'J_z' follows from m, r_0 and r with body disc: leave one of the two out"}
-TYPED = [(words, line) for words, *lines in FAULTS.values() for line in lines]
-TYPED += [(words, f"run {line}") for line, words in OF_RUN.items()]
-TYPED += [(words, f"study {line}") for line, words in OF_STUDY.items()]
-
-
-def asked(folder: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """What the command's reader, by the standard library alone, makes of a line."""
-    reads = [sys.executable, "-S", "-B", str(ROOT / "tools"), *line.split()]
-    return subprocess.run(reads, cwd=folder, env=os.environ | environment, capture_output=True, text=True)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("typed")
-    (place / "motion.csv").write_text(MOTION)
-    (place / "thesis.html").write_text("years of work")
-    return place
-
-
-@pytest.mark.parametrize(("words", "line"), TYPED, ids=[line for _, line in TYPED])
-def test_a_fault_of_any_kind_is_refused_by_every_command_in_one_sentence_with_status_2(folder, words, line) -> None:
-    done = asked(folder, line)
-    assert (done.returncode, done.stdout) == (2, ""), done.stderr
-    assert words in done.stderr and done.stderr.count("\n") == 1
-    assert ((folder / "motion.csv").read_text(), (folder / "thesis.html").read_text()) == (MOTION, "years of work")
-
-
 TAKEN = ("run v=18.5", "run keep_contact=true method=bdf", "run keep_contact=1 formulation=3", "run coin s=1mm")
-TAKEN += ("study --vary formulation=1,multibody --set keep_contact=true --set method=bdf", "study --vary s=0:0.1:3")
-TAKEN += ("example car path=1 v=18.5", "example suspended exchange=held")
-TAKEN += ("view motion.csv --slope 12% --r_0 30cm --r 5cm",)
-TAKEN += ("view motion.csv --output thesis.html --overwrite", "report speed --publish")
+
+
+@pytest.mark.parametrize(("line", "words"), REFUSED.items())
+def test_a_fault_is_refused_in_one_sentence_with_status_2(tmp_path: Path, line: str, words: str) -> None:
+    check_refused(tmp_path, line, words)
 
 
 @pytest.mark.parametrize("line", TAKEN)
-def test_what_is_meant_is_taken(folder, line) -> None:
-    done = asked(folder, line, PYTHONOPTIMIZE="2")
-    assert (done.returncode, done.stderr) == (0, "")
+def test_what_is_meant_is_taken(tmp_path: Path, line: str) -> None:
+    check_taken(tmp_path, line)
 
 
 def test_the_doors_differ_in_their_names_alone() -> None:
@@ -184,62 +85,7 @@ def test_a_command_is_the_same_through_a_link_and_whatever_the_environment(tmp_p
     assert {(one.stdout, one.stderr) for one in done} == {(done[0].stdout, "")} and "phi_dot_start" in done[0].stdout
 
 
-GOOD = "theta_start,phi_dot_start\n75deg,-2\n1.2,0\n"
-SPREADSHEETS = {
-    "a byte-order mark": "\ufeff" + GOOD,
-    "lines of Windows": GOOD.replace("\n", "\r\n"),
-    "blanks beside the commas": GOOD.replace(",", " , "),
-    "a trailing comma in each row": GOOD.replace("\n", ",\n"),
-    "a trailing comma in the first row": GOOD.replace("start\n", "start,\n"),
-    "empty rows": GOOD.replace("\n", "\n\n,\n") + ",,\n",
-    "quotes": re.sub(r"[^,\n]+", r'"\g<0>"', GOOD),
-    "no end of the last line": GOOD.rstrip(),
-}
-
-
-@pytest.mark.parametrize("text", SPREADSHEETS.values(), ids=SPREADSHEETS)
-def test_a_table_is_read_as_spreadsheets_write_it(tmp_path: Path, text: str) -> None:
-    (tmp_path / "starts.csv").write_text(text, newline="")
-    expected = {"theta_start": ["75deg", "1.2"], "phi_dot_start": ["-2", "0"]}
-    assert read_table(tmp_path / "starts.csv").columns == expected
-    assert asked(tmp_path, "study --list starts.csv").returncode == 0
-
-
-REFUSED = {
-    "theta_start,phi_dot_start\n75deg,-2\n\n1.2,zero\n": 'line 4, column 2: phi_dot_start = "zero" is not a number',
-    'theta_start,phi_dot_start\n"1,2","-2,5"\n': 'line 2, column 1: theta_start = "1,2" is not one number',
-    "theta_start\n0:0.03:2\n": 'line 2, column 1: theta_start = "0:0.03:2"',
-    "formulation\n1\n2.7\n": "line 3, column 1: formulation = 2.7 is not one of",
-    "theta_start,theta_start\n1.2,1.3\n": "theta_start is given twice, as column 1 and as column 2",
-    "theta_start;phi_dot_start\n1,2;-2\n": "semicolons separate its columns",
-    '"theta_start";"phi_dot_start"\n"1.2";"-2"\n': "semicolons separate its columns",
-    "theta_start\tphi_dot_start\n1.2\t-2\n": "tabs separate its columns",
-    ",theta_start\n0,1.2\n": "column 1 has no name",
-    "theta_start,s\n1.2\n": "line 2: 1 values for the 2 names",
-    "theta_start,s\n1.2,0,7\n": "line 2: 3 values for the 2 names",
-    "theta_start,s\n1.2,\n": 's = "" is not a number',
-    "theta_start,s\n": "has no rows",
-    "": "has no rows",
-    "theta_strat\n1.2\n": "Do you mean theta_start",
-}
-
-
-@pytest.mark.parametrize(("text", "words"), REFUSED.items())
-def test_a_table_that_cannot_be_meant_is_refused_with_its_place_and_content(tmp_path: Path, text, words) -> None:
-    (tmp_path / "starts.csv").write_text(text)
-    done = asked(tmp_path, "study --list starts.csv")
-    assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1
-
-
-def test_a_file_in_another_encoding_is_refused_with_one_sentence(tmp_path: Path) -> None:
-    (tmp_path / "starts.csv").write_bytes(GOOD.encode("utf-16"))
-    with pytest.raises(Fault, match="it is not UTF-8 text"):
-        read_table(tmp_path / "starts.csv")
-
-
-def test_every_progress_bar_is_the_one_for_terminals(monkeypatch: pytest.MonkeyPatch) -> None:
-    texts = {path.name: path.read_text() for part in ("tools", "examples") for path in (ROOT / part).rglob("*.py")}
-    assert [name for name, text in texts.items() if re.search(r"\btqdm\(", text)] == ["progress.py"]
+def test_a_progress_bar_is_for_terminals(monkeypatch: pytest.MonkeyPatch) -> None:
     for terminal in (False, True):
         monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
         assert bar([]).disable is not terminal
@@ -308,19 +154,73 @@ def test_of_two_runs_at_once_each_prints_that_its_own_results_are_ready(simulate
 
 
 def test_only_one_process_at_a_time_uses_a_place(tmp_path: Path) -> None:
-    """The second waits for the first; at another place it does not."""
+    """The second waits for the first; at another place it does not. Each has its own TMPDIR, as host and container."""
     program = "import sys, time; from wheelfmu.fmu.outputs import alone; from pathlib import Path; t = time.monotonic\n"
     program += "with alone(Path(sys.argv[1])): print(t(), flush=True); time.sleep(1); print(t())"
 
     def spans(*places: str) -> list[list[float]]:
         commands = [[sys.executable, "-c", program, tmp_path / place] for place in places]
-        started = [subprocess.Popen(c, stdout=subprocess.PIPE, text=True) for c in commands]
+        started = []
+        for k, words in enumerate(commands):
+            (own := tmp_path / f"tmp_{k}").mkdir(exist_ok=True)
+            how = {"env": os.environ | {"TMPDIR": str(own)}, "stdout": subprocess.PIPE, "text": True}
+            started.append(subprocess.Popen(words, **how))
         return sorted([float(t) for t in one.communicate()[0].split()] for one in started)
 
     first, second = spans("a", "a")
     assert first[1] <= second[0]
     first, second = spans("a", "b")
     assert second[0] < first[1]
+
+
+def test_two_processes_of_one_number_as_in_two_containers_write_to_files_of_their_own(tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(os, "getpid", lambda: 7)
+    with fresh(tmp_path / "a") as one, fresh(tmp_path / "a") as other:
+        assert one != other and one.parent == other.parent == tmp_path
+        one.touch()
+        other.touch()
+
+
+SMALL = 500_000  # bytes that a file may have, an error as of a full disk
+WRITES = {"run": ("run", "wheel.fmu"), "view": ("view rolls.csv", "rolls.html")}  # a study: lab/studies/tests
+
+
+@pytest.mark.parametrize("name", WRITES)
+def test_a_full_disk_ends_a_command_with_one_sentence_and_leaves_nothing_half_written(tmp_path: Path, name) -> None:
+    def files() -> dict[Path, int]:
+        places = [tmp_path.iterdir(), ROOT.glob("wheel.fmu"), ROOT.glob(".*.wheel.fmu"), ROOT.glob("results/.new-*/*")]
+        return {path: path.stat().st_mtime_ns for place in places for path in place}
+
+    (tmp_path / "rolls.csv").write_text("time,X_O,Y_O,psi,theta,phi\n0,0,0,0,1.5,0\n1,1,0,0,1.5,-3\n")
+    before, (line, path) = files(), WRITES[name]
+    words = [sys.executable, "-P", "-m", "wheelfmu", *line.split()]
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (SMALL, SMALL))
+    done = subprocess.run(words, cwd=tmp_path, preexec_fn=limit, capture_output=True, text=True)
+    said = re.sub("^Waiting for another process.*\n", "", done.stderr)
+    assert re.fullmatch(rf"{name}: \S*{path}: File too large\.\n", said) and done.returncode == 2, done
+    assert files() == before
+
+
+def test_a_full_disk_behind_the_output_is_one_sentence_and_a_reader_that_has_gone_none() -> None:
+    words = [sys.executable, "-P", "-m", "wheelfmu", "help"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (2, "help: the output: No space left on device.\n")
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, text=True)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
+
+
+def test_a_folder_in_the_place_of_a_file_is_named(simulated: Path) -> None:
+    (simulated / "wheel.fmu").mkdir()
+    (simulated / "wheel.fmu" / "mine.txt").touch()
+    done = subprocess.run(runs(), cwd=simulated, capture_output=True, text=True)
+    assert done.stderr.endswith(
+        "wheel.fmu is a folder, and a file is to be written there: rename or delete the folder.\n"
+    )
+    assert (simulated / "wheel.fmu" / "mine.txt").exists()
 
 
 def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None:
@@ -330,4 +230,4 @@ def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None
     )
     for words, left in ((["killed"], 1), ([], 0)):
         subprocess.run([sys.executable, "-c", program, tmp_path, *words], check=False)
-        assert len([*tmp_path.iterdir()]) == left
+        assert len([*tmp_path.glob(".new-*")]) == left

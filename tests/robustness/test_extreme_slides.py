@@ -9,6 +9,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from robustness.sweep import similar
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DISCARD, OK
@@ -16,7 +17,6 @@ from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.schedule import play
 from wheelfmu.truth.sliding import random_slide
-from wheelfmu.truth.sweep import similar
 
 TOLERANCE = 1e-8
 THROWN = {"slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0}

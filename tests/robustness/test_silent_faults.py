@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
 
-from wheelfmu.fmu.driver import ERROR, OK
+from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
 from wheelfmu.truth.closed_forms import rolling_inertia
 from wheelfmu.truth.scenes import PAPER, PULLED
 from wheelfmu.truth.schedule import play
@@ -154,3 +154,23 @@ def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel
         w = wheel().start(keep_contact=True, method=method, **fast)
         assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
         assert instants_of_pulls(w) == [0.0]
+
+
+def test_each_of_two_failures_has_its_own_message(wheel):
+    """Of two runs of one instance: too many turns, then a force that no step follows."""
+    w = wheel()
+    before = w.start().serialized()
+    for _ in range(2):
+        assert w.back(before).step(1e14) == ERROR and "the angle has too few digits" in w.said()
+        assert w.back(before).put(M_3=1e280).step(0.1) == ERROR
+        assert "too few digits" not in w.said()
+
+
+def test_a_step_that_fails_counts_nothing_and_the_counts_stay_when_the_run_is_closed(wheel):
+    for values in ({}, {"s": 0.03}, {"s": 0.03, "friction_law": 2, "omega_s": 1e-6}):
+        w = wheel().start(**values).to(1.5)
+        counts = w.get(*COUNTERS)
+        before = w.serialized()
+        assert w.put(M_3=1e280).step(0.1) == ERROR and w.get(*COUNTERS) == counts
+        assert w.back(before).terminate() == OK and w.get(*COUNTERS) == counts
+        beyond(wheel().start(**values).put(M_3=1.0).to(0.5).get("n_rhs")[0], 0, "evaluations")

@@ -1,21 +1,19 @@
 """The regularized law: its error, the choice of method; and ten minutes of weak releases."""
 
-from functools import partial
-
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import OK, Values
-from wheelfmu.truth.judges import FRICTION, TIMES, error_against, law_bound, law_error
-from wheelfmu.truth.kept import kept
+from wheelfmu.truth.measure import ROUGH as FRICTION
+from wheelfmu.truth.measure import TIMES, error_against, law_error
 from wheelfmu.truth.motion import Library, Run, run
-from wheelfmu.truth.reference.modes import rolling
-from wheelfmu.truth.reference.motion import initial_state
 from wheelfmu.truth.scenes import Scene
 
-PLACE = [7, 8]  # X_O and Y_O in the state of the reference
+
+def law_bound(omega_s: float, tolerance: float) -> float:
+    """Error of the law allowed: per rad/s of its width, per tolerance."""
+    return 5.0 * omega_s + 100.0 * tolerance
 
 
 @pytest.fixture(scope="module")
@@ -83,10 +81,8 @@ def test_a_stiff_law_is_solved_within_its_tolerance(library: Library, method: st
     for seed in range(40):
         start, omega_s = random_law(seed)
         law = {**start, "keep_contact": True, "friction_law": "regularized", "method": method}
-        scene = Scene(start)
-        rate, state = rolling(scene.wheel, omega_s), initial_state(scene.wheel, scene.motion)
-        solved = partial(solve_ivp, rate, (0, 3), state, "LSODA", times, rtol=1e-11, atol=1e-13)
-        exact = kept(("stiff law", sorted(start.items()), omega_s), lambda solved=solved: solved().y[PLACE].T)
+        solved = Scene({**start, "omega_s": omega_s}).solved_stiffly(times)
+        exact = np.column_stack([solved["X_O"], solved["Y_O"]])
         for found, width in ((errors, omega_s), (others, 2 * omega_s)):
             done = run(library, law | {"omega_s": width}, times, tolerance)
             way = np.column_stack([done["X_O"], done["Y_O"]])

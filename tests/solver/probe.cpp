@@ -29,7 +29,7 @@ struct Setting {
   Kind kind;
   solver::Method method;
   double tolerance, longest_step, y[states];
-  Watch watched;  // null: nothing
+  Watch watched, later_listed, quick;  // null: nothing; quick: its value comes with the rates
   const double* extremes;
   int extreme_count;
 };
@@ -72,7 +72,8 @@ void slopes_of_steep(void*, double, const double*, std::span<const double> value
 
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   rates(of(owner), t, y, y_dot);
-  return std::isfinite(y_dot[0]) ? 1 : NAN;
+  if (!std::isfinite(y_dot[0])) return NAN;
+  return of(owner).quick ? of(owner).quick(t, y) : 1;
 }
 
 void weights(void* owner, double share, const double* y, double* w) {
@@ -81,7 +82,10 @@ void weights(void* owner, double share, const double* y, double* w) {
   if (of(owner).kind == steep) w[1] /= width;
 }
 
-double watched(void* owner, int, double t, const double* y) { return of(owner).watched(t, y); }
+double watched(void* owner, int event, double t, const double* y) {
+  const Setting& s = of(owner);
+  return (event == 1 ? s.watched : event == 2 ? s.later_listed : s.quick)(t, y);
+}
 
 int extremes_inside(void* owner, double t_lo, double t_hi, double* instants) {
   const Setting& s = of(owner);
@@ -94,6 +98,9 @@ solver::Problem problem_of(Probe* probe) {
   solver::Problem p = {};
   p.states = states, p.owner = &s, p.derivative = derivative, p.weights = weights;
   if (s.watched) p.watch({1, watched, false});
+  if (s.later_listed) p.watch({2, watched, false});
+  if (s.quick) p.watch({3, watched, true});
+  p.near = 0.1;
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   if (s.kind == steep)
     p.steep = {1, slopes_of_steep};
@@ -130,13 +137,13 @@ PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   (void)probe->solver.restart(problem_of(probe), s.method, t, y);
 }
 
-// Begin of the last step, time known; steps, evaluations, roots.
-PUBLIC void probe_progress(const Probe* probe, double now[5]) {
+// Begin of the last step, time known; steps, evaluations, roots; the function that fell last.
+PUBLIC void probe_progress(const Probe* probe, double now[6]) {
   const solver::Solver& s = probe->solver;
   const solver::Counters& n = s.counters();
   const double times[] = {s.step_start(), s.known_until()};
-  const long long counts[] = {n.steps, n.rhs, n.roots};
-  std::copy_n(counts, 3, std::copy_n(times, 2, now));
+  const long long counts[] = {n.steps, n.rhs, n.roots, s.event()};
+  std::copy_n(counts, 4, std::copy_n(times, 2, now));
 }
 
 // The history of one into another, of the same setting, by way of bytes; false where it was refused.

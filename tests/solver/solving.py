@@ -14,29 +14,33 @@ PROBLEMS |= {"settling": (0.0, 0.0, 1.0, 0.0), "falling": (1.0, 0.0, 1.0, 0.0), 
 STATES = 8  # those beyond the problem's own rest at zero
 STEPPED, EVENT, FAILED = range(3)
 WATCH = CFUNCTYPE(c_double, c_double, POINTER(c_double))
-# Begin of the last step, time known, instant of the event; counts since the start.
-Progress = namedtuple("Progress", "begin known steps rhs roots")
+# Begin of the last step, time known; counts since the start; which function fell last.
+Progress = namedtuple("Progress", "begin known steps rhs roots fallen")
+EACH_STEP, LATER_LISTED, QUICK = 1, 2, 3
 
 
 class Setting(Structure):
     _fields_ = (
         *(("kind", c_int), ("method", c_int), ("tolerance", c_double)),
-        *(("longest_step", c_double), ("y", c_double * STATES), ("watched", WATCH)),
+        *(("longest_step", c_double), ("y", c_double * STATES)),
+        *((name, WATCH) for name in ("watched", "later_listed", "quick")),
         *(("extremes", POINTER(c_double)), ("extreme_count", c_int)),
     )
 
 
 class Solver:
-    """At t = 0. each_step: a function of (t, y) that is watched; extremes: instants."""
+    """At t = 0. each_step, later_listed, quick: watched functions of (t, y), in this order; extremes: instants."""
 
     def __init__(
-        self, library, method, problem="harmonic", tolerance=1e-8, longest_step=1.0, each_step=None, extremes=()
-    ):
+        self, library, method, problem="harmonic", tolerance=1e-8, longest_step=1.0, each_step=None, extremes=(),
+        later_listed=None, quick=None,
+    ):  # fmt: skip
         self.library, y = library, PROBLEMS[problem]
         self.states = len(y)
         self.setting = Setting(
             list(PROBLEMS).index(problem), METHODS[method], tolerance, longest_step, (c_double * STATES)(*y),
-            WATCH(each_step or 0), (c_double * len(extremes))(*extremes), len(extremes),
+            *(WATCH(function or 0) for function in (each_step, later_listed, quick)),
+            (c_double * len(extremes))(*extremes), len(extremes),
         )  # fmt: skip
         for name, result in (("new", c_void_p), ("failure", c_char_p)):
             getattr(library, f"probe_{name}").restype = result

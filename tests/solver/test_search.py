@@ -5,7 +5,7 @@ from math import acos, asin, pi, sin, sqrt
 import pytest
 from support.bounds import EPSILON, absolute_error, within
 
-from .solving import EVENT, STEPPED, harmonic
+from .solving import EACH_STEP, EVENT, LATER_LISTED, QUICK, STEPPED, harmonic
 
 
 def dips(solver, method, depth):
@@ -99,3 +99,32 @@ def test_a_release_with_rate_zero_is_no_event_but_the_fall_after_it_is(solver, m
     assert one.run(10 * last) == EVENT
     rounding = 128 * EPSILON if method == "collocation" else 0  # of the powers over a step of one second
     within(absolute_error(one.now.known, last), 2e-12 * last + rounding, "instant of the fall, s")
+
+
+@pytest.mark.parametrize("step", [1.0, 0.02])
+@pytest.mark.parametrize("instants", [(0.4, 0.7, 0.9), (0.7, 0.4, 0.9), (0.9, 0.7, 0.4), (0.4, 0.4, 0.4)], ids=str)
+def test_of_functions_that_fall_in_one_step_the_first_counts_wherever_it_is_listed(solver, method, instants, step):
+    """And of those that fall at one instant the last of the list; after it the others are found, each at its own."""
+    names = {"each_step": EACH_STEP, "later_listed": LATER_LISTED, "quick": QUICK}
+    left = dict(zip(names, instants, strict=True))
+    one = solver(method, "clock", longest_step=step, **{name: lambda t, y, n=name: left[n] - t for name in names})
+    while left != dict.fromkeys(names, 9.0):
+        assert one.run(1.0) == EVENT
+        first = min(left.values())
+        name = [name for name, instant in left.items() if instant == first][-1]
+        within(absolute_error(one.now.known, first), 64 * EPSILON, "instant of the first fall, s")
+        assert one.now.fallen == names[name]
+        left[name] = 9.0
+        one.restart(one.now.known, one.read(one.now.known))
+    assert one.run(1.0) == STEPPED
+
+
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("depth", [1e-3, -1e-3])
+@pytest.mark.parametrize("engine", ["runge_kutta", "collocation"])
+def test_a_quick_function_is_looked_at_where_it_comes_near_zero_inside_a_step_alone(solver, engine, place, depth):
+    """A parabola of 0.16 and more at the ends of a step of 1 s: below 0.1 it is near. CVODE evaluates the ends."""
+    one = solver(engine, "clock", quick=lambda t, y: 4 * (t - place) ** 2 - depth)
+    assert one.run(1.0) == (EVENT if depth > 0 else STEPPED)
+    if depth > 0:
+        within(absolute_error(one.now.known, place - sqrt(depth) / 2), 64 * EPSILON, "instant of the fall, s")

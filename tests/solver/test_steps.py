@@ -132,3 +132,12 @@ def test_cvode_goes_on_from_bytes_with_the_same_bits_also_where_it_has_started_a
         other.step()
         t = 0.5 * (one.now.begin + one.now.known)
         assert one.now == other.now and one.read(t) == other.read(t)
+
+
+def test_each_of_two_failures_has_its_own_reason(solver, method):
+    one = solver(method, "ending")
+    for _ in range(2):
+        one.restart(2.0, [1.0])
+        assert one.run(3.0) == FAILED and one.failure == "the rates of the states are not finite"
+        one.restart(0.0, [1.0])
+        assert one.run(2.0, 100_000) == FAILED and one.failure.startswith("the step size became too small: ")

@@ -1,4 +1,4 @@
-"""Fixtures of every folder of tests: the built FMU and its instances, the trusted tables."""
+"""Fixtures of every folder of tests: the built FMU and its instances, the reference of the paper's scenes."""
 
 import os
 import resource
@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from hypothesis import HealthCheck, settings
 
 from wheelfmu.fmu.driver import FMU2Wheel
 from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.truth.measure import FRICTION, paper
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.reference import Solution
 
 # hypothesis: the same examples in every run.
 UNCHECKED = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
@@ -98,9 +98,9 @@ def description(fmu: str):
 
 
 @pytest.fixture(scope="session")
-def reference_tables() -> dict[str, dict[str, np.ndarray]]:
-    """The trusted tables of the paper's two scenes, every 0.1 s."""
-    return {scene: read_table(f"paper_{scene}") for scene in ("free", "friction")}
+def references() -> dict[str, Solution]:
+    """The paper's two scenes by the reference, every 0.1 s."""
+    return {scene: paper(scene) for scene in FRICTION}
 
 
 @pytest.fixture(scope="session")

@@ -26,11 +26,12 @@ REFUSALS: list[tuple[Values, str, Values]] = [
     ({"J_z": 1.8 * (1 + 1e-11)}, f"J_x, J_y, J_z = 0.9, 0.9, 1.8 {TRIANGLE}", {"J_z": 1.8 * (1 + 2e-16)}),
     ({"g": -9.81}, "g = -9.81: it must be at least 0.", {"g": 1e-300}),
     ({"s": -0.03}, "s = -0.03: it must be at least 0.", {"s": 0.0}),
-    ({"slope": pi / 2}, "slope = 1.57079633 rad: it must be less than 1.5708.", {"slope": 1.57}),
+    ({"slope": pi / 2}, "slope = 1.57079633 rad: it must be less than 1.5708.", {"slope": pi / 2 * (1 - 1e-12)}),
     ({"psi_start": -inf}, f"psi_start = -inf: {NUMBER}", {"psi_start": 7.0}),
     ({"theta_start": -0.1}, f"theta_start = -0.1 rad: {STANDS}", {"theta_start": 3.1}),
     ({"theta_start": 0.0}, f"theta_start = 0 rad: {STANDS}", {"theta_start": 2e-7}),
     ({"theta_start": pi}, f"theta_start = 3.14159265 rad: {STANDS}", {"theta_start": 3.14159}),
+    ({"theta_start": 0.99e-7}, f"theta_start = 9.9e-08 rad: {STANDS}", {"theta_start": 1.01e-7}),
     ({"theta_start": 7.0}, f"theta_start = 7 rad: {STANDS}", {"theta_start": 0.7}),  # where its sine is above 0 again
     ({"phi_dot_start": nan}, f"phi_dot_start = nan: {NUMBER}", {"phi_dot_start": 0.0}),
     ({"formulation": 4}, "formulation = 4: it must be at most 3.", {"formulation": 3}),
@@ -75,13 +76,13 @@ REFUSALS: list[tuple[Values, str, Values]] = [
         for axis, both in (("x", "1, 0"), ("y", "0, 1"))
     ),
     (
-        {"psi_start": 1e13},
-        "psi_start = 1e+13 rad: beyond 1e+12 rad an angle has too few digits.",
+        {"psi_start": 1.0001e12},
+        "psi_start = 1.0001e+12 rad: beyond 1e+12 rad an angle has too few digits.",
         {"psi_start": 1e12},
     ),
     (
-        {"phi_start": -1e13},
-        "phi_start = -1e+13 rad: beyond 1e+12 rad an angle has too few digits.",
+        {"phi_start": -1.0001e12},
+        "phi_start = -1.0001e+12 rad: beyond 1e+12 rad an angle has too few digits.",
         {"phi_start": -1e12},
     ),
     (

@@ -9,8 +9,9 @@ from types import ModuleType
 from typing import Any
 
 from wheelfmu import commands
+from wheelfmu.fmu.outputs import worded
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, Parser
+from wheelfmu.fmu.values import Parser
 
 
 def module_of(name: str) -> ModuleType:
@@ -36,27 +37,12 @@ def read(name: str, module: ModuleType, words: list[str]) -> Any:
     return parser.parse_args(words)
 
 
-def needs(name: str, *words: str) -> tuple[str, ...] | None:
-    """What a command with these words needs of set-up; none where its help was printed."""
-    try:
+def needs(name: str, *words: str) -> tuple[str, ...] | list[str]:
+    """What a command with these words needs of set-up; help ends the program."""
+    with worded(name):
         module = module_of(name)
         given = read(name, module, [*words])
-        sys.stdout.flush()
-    except Fault as fault:
-        sys.exit(refusal(name, fault))
-    except BrokenPipeError:  # of a reader of the help, such as head, which has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return None
-    except SystemExit as end:
-        if end.code:
-            raise
-        return None
-    return module.needs(given) if hasattr(module, "needs") else getattr(module, "NEEDS", ())
-
-
-def refusal(name: str, fault: Exception) -> int:
-    print(f"{name}: {fault}", file=sys.stderr)
-    return 2
+        return module.needs(given) if hasattr(module, "needs") else getattr(module, "NEEDS", ())
 
 
 class Stop:
@@ -77,23 +63,22 @@ def main(name: str, *words: str) -> int:
     from wheelfmu.commands import processes
 
     os.environ["MPLBACKEND"] = "Agg"  # whatever a notebook has set for its own figures
-    processes.adopt()
     module = module_of(name)
     stop = Stop(again=0.0 if getattr(module, "FINISHES", False) else 1.0)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM):
-        signal.signal(number, stop)
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as by nohup, and SIGINT in a script's background job
+            signal.signal(number, stop)
     try:
-        given = read(name, module, [*words])
-        if not getattr(module, "STAYS", False):
-            os.chdir(ROOT)
-        return int(module.main(given) or 0)
+        with worded(name):
+            given = read(name, module, [*words])
+            if not getattr(module, "STAYS", False):
+                os.chdir(ROOT)
+            return int(module.main(given) or 0)
     except KeyboardInterrupt:
-        print(f"\n{name}: interrupted.", file=sys.stderr)
+        print(f"\n{name}: {getattr(module, 'INTERRUPTED', 'interrupted.')}", file=sys.stderr)
         return 128 + stop.number
     except processes.Failed as failed:
         return failed.status
-    except Fault as fault:
-        return refusal(name, fault)
     finally:
         processes.end_all()
 

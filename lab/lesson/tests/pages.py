@@ -71,9 +71,9 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     return path
 
 
-def view(*arguments: object) -> int:
-    """What ./scripts/view does, once all is set up; its exit status."""
-    return main(*map(str, arguments))
+def view(*arguments: object) -> None:
+    """What ./scripts/view does, once all is set up."""
+    main(*map(str, arguments))
 
 
 def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:

@@ -53,11 +53,9 @@ def test_prefixes_make_several_wheels_and_other_columns_stay_unread(tmp_path):
 
 def refusal(capsys, *words) -> str:
     """What the command prints when it takes these words for wrong."""
-    try:
-        status = view(*words)
-    except SystemExit as end:
-        status = end.code
-    assert status == 2
+    with pytest.raises(SystemExit) as end:
+        view(*words)
+    assert end.value.code == 2
     return capsys.readouterr().err
 
 

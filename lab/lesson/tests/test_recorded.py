@@ -8,7 +8,7 @@ from playwright.sync_api import Page
 from scipy.spatial.transform import Rotation
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.truth.reference.tables import read_table
+from wheelfmu.truth.measure import transitions
 
 from .pages import POSE, RECORD, TURN, opened, view, write_csv
 
@@ -101,7 +101,7 @@ def phases(page: Page, rows: np.ndarray, leave_out: str = "") -> dict[str, list]
 def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
     free, friction = recorded.evaluate("page.wheels.map(({phases}) => phases)")
     begin, end = friction["sticks"][0]
-    within(abs(begin - read_table("paper_friction_events")["t"][1]), 1e-3, "begin of it, s")  # rows are 0.01 s apart
+    within(abs(begin - transitions()[1, 0]), 1e-3, "begin of it, s")  # rows are 0.01 s apart
     beyond(end, 1.3, "end of the first stick, s")
     assert free == {"sticks": [], "slides": [], "transitions": []}
 
@@ -109,10 +109,10 @@ def test_the_wheel_sticks_at_its_instant_and_without_friction_never(recorded):
 def test_transitions_between_two_rows_are_marked_though_no_row_lies_in_the_phase(recorded, simulate):
     rows = simulate(output_interval=0.1, output=RECORD, start_values={"s": 0.03})
     found = phases(recorded, rows)
-    instants = read_table("paper_friction_events")["t"][1:]
+    instants = transitions()[1:, 0]
     assert len(found["transitions"]) == len(instants) == 37
     within(absolute_error(found["transitions"], instants), 0.1, "instants of all, s")  # the distance of two rows
-    assert len(found["sticks"]) == (read_table("paper_friction_events")["mode"] == 0).sum()
+    assert len(found["sticks"]) == (transitions()[:, 1] == 0).sum()
     assert len(phases(recorded, rows, leave_out="n_events")["transitions"]) < 37
 
 

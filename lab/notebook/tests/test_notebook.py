@@ -14,6 +14,7 @@ import pytest
 from support.bounds import beyond, relative_error, within
 
 from lab.notebook.writing import NOTEBOOK, executed
+from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.closed_forms import critical_spin
 from wheelfmu.truth.scenes import PAPER
 
@@ -45,6 +46,16 @@ def lesson(fmu_path: Path) -> dict[str, object]:
                 exec(cell.source.replace("../../wheel.fmu", str(fmu_path)), names)
     plt.close("all")
     return names
+
+
+def test_the_cell_that_teachers_add_gives_the_critical_spin_of_its_wheel(lesson, capsys) -> None:
+    guide = (ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")
+    (cell,) = re.findall(r"```python\n(.*?)```", guide, re.DOTALL)
+    exec(cell, dict(lesson))
+    m, r_0, r = 20.0, 0.25, 0.08  # homogeneous torus
+    J_x, J_z = m * (r_0**2 / 2 + 5 / 8 * r**2), m * (r_0**2 + 3 / 4 * r**2)
+    critical = np.sqrt(m * 9.81 * r_0 * J_x / (J_z * (J_z + m * (r_0 + r) ** 2)))
+    within(abs(float(capsys.readouterr().out) / critical - 1), 1e-12, "critical spin, relative")
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1, 2.0])

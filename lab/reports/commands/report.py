@@ -8,11 +8,14 @@ from wheelfmu.commands.build import build
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
 
-NEEDS = ("reports", "studies")
 reads = options.arguments
+needs = options.needs
 
 
 def main(given: Namespace) -> int:
+    if not given.names:
+        print(options.listing())
+        return 0
     if not (given.render or given.check):
         build("release")
     os.environ["OMP_NUM_THREADS"] = "1"  # before numpy is loaded

@@ -3,7 +3,8 @@
 
 from argparse import Namespace
 
-from lab.studies.options import arguments_of as reads  # noqa: F401 - by __main__
+from lab.studies.options import INTERRUPTED  # noqa: F401 - by __main__
+from lab.studies.options import arguments_of as reads  # noqa: F401
 from wheelfmu.commands.build import fmu
 
 STAYS, FINISHES, NEEDS = True, True, ("studies",)

@@ -1,21 +1,16 @@
-"""The package of ./scripts/study on the import path, workers and an object store, and small studies to run."""
+"""Workers, and small studies to run."""
 
-import os
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import fsspec
-import numpy as np
 import pytest
 import xarray as xr
 from distributed import LocalCluster
 from fmpy import extract
-from moto.server import ThreadedMotoServer
 
 from lab.studies import Study, compute
 from lab.studies.dataset import axes_of, points, template
-from lab.studies.plan import description
+from lab.studies.names import description
 from lab.studies.worker import Instance, pack, run_block
 from wheelfmu.fmu import values
 
@@ -28,10 +23,9 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
 
     def run(study: Study) -> xr.Dataset:
         study.check(variables)
-        instance._kept = None  # no snapshot of an earlier call
         axes = axes_of(study)
         results = template(study, axes, variables, 1_000_000)
-        found = run_block(instance, study, points(axes, {}))
+        found = run_block(instance, study, points(axes))
         assert found.keys() == results.keys()
         return results.assign({name: (results[name].dims, values) for name, values in found.items()})
 
@@ -39,19 +33,7 @@ def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[
 
 
 @pytest.fixture(scope="session")
-def bucket() -> Iterator[str]:
-    """The URL of a bucket in an object store on this machine; set before workers start, which find it there."""
-    server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
-    server.start()
-    keys = {"AWS_ACCESS_KEY_ID": "a", "AWS_SECRET_ACCESS_KEY": "b", "AWS_DEFAULT_REGION": "us-east-1"}
-    os.environ.update(keys, AWS_ENDPOINT_URL="http://{}:{}".format(*server.get_host_and_port()))
-    fsspec.filesystem("s3").mkdir("studies")
-    yield "s3://studies"
-    server.stop()
-
-
-@pytest.fixture(scope="session")
-def crew(bucket: str) -> Iterator[LocalCluster]:
+def crew() -> Iterator[LocalCluster]:
     """Two workers on this machine, for all tests of a process."""
     with compute.cluster(2) as workers:
         yield workers

@@ -26,17 +26,7 @@ def same(a: xr.Dataset, b: xr.Dataset) -> bool:
     return a.equals(b)
 
 
-def run_and_write(*task: object) -> None:
-    """As a worker does it, but an error if it has not written the chunk itself."""
-    assert run_chunk(*task) is None
-
-
-def without_the_store(upload: str, study: Study, _place: str, *task: object) -> Result | None:
-    """As a worker does it that does not see the caller's store."""
-    return run_chunk(upload, study, "/nowhere", *task)
-
-
-def die_at_upright(*task: object) -> Result | None:
+def die_at_upright(*task: object) -> Result:
     """As a worker does it, but the process dies where a wheel starts at exactly 1.5 rad."""
     if (task[-1]["theta_start"] == 1.5).any():
         os._exit(1)

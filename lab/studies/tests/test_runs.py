@@ -1,4 +1,4 @@
-"""The runs of a worker: one instance, fmi2Reset between runs, a shared start, a status for every fate."""
+"""The runs of a worker: one instance, fmi2Reset between runs, a status for every fate."""
 
 from dataclasses import replace
 from itertools import product
@@ -11,8 +11,7 @@ from fmpy import simulate_fmu
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
 from lab.studies import Status, Study, StudyError
-from lab.studies.dataset import sample
-from lab.studies.plan import can_change, parse_measure
+from lab.studies.measures import parse_measure
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import variables
 from wheelfmu.truth.sliding import SLIDES, UPRIGHT
@@ -21,12 +20,6 @@ from .studies_support import FATES, same
 
 DESCRIPTION = (ROOT / "modelDescription.xml").read_bytes()
 JAMS = SLIDES["jams"].start
-BRANCHING = Study(
-    grid={"phi_dot_start": [0.0, -2.0], "s": [0.0, 0.01, 0.03], "M_3": [0.0, -0.2]},
-    measures={"theta_end": "theta", "mu": "max(mu_required)"},
-    stop_time=4.0,
-    branch_at=1.5,
-)
 
 
 @pytest.fixture(scope="module")
@@ -103,13 +96,11 @@ def test_an_extreme_lies_between_the_samples_of_a_smooth_turn_and_on_the_sample_
     beyond(1 - swing.max(), 1e-5, "largest sample below the swing's")
 
 
-@pytest.mark.parametrize("study", [FATES, BRANCHING], ids=["own starts", "shared starts"])
-def test_a_run_is_bit_identical_whatever_was_run_before_it(alone, study: Study) -> None:
-    """Also a run that continues from the snapshot of a shared start: against one that has fetched none."""
-    together = alone(study)
-    for point in product(*study.grid.values()):
-        where = {name: [value] for name, value in zip(study.grid, point, strict=True)}
-        assert same(alone(replace(study, grid=where)), together.sel(where))
+def test_a_run_is_bit_identical_whatever_was_run_before_it(alone) -> None:
+    together = alone(FATES)
+    for point in product(*FATES.grid.values()):
+        where = {name: [value] for name, value in zip(FATES.grid, point, strict=True)}
+        assert same(alone(replace(FATES, grid=where)), together.sel(where))
     assert {Status.reached, Status.flat} <= {*together["status"].values.flat}
     assert not same(together.isel(s=[0]), together.isel(s=[1]).assign_coords(s=[0.0]))
 
@@ -118,12 +109,10 @@ FAULTS = {
     "either grid or list": {"list": {"s": [0.0]}},
     "one length": {"grid": {}, "list": {"s": [0.0, 0.1], "theta_start": [1.0]}},
     "a list of numbers": {"grid": {"s": []}},
-    "'s' must be a list": {"grid": {"s": []}, "values": {"s": 0.0}, "branch_at": 1.0},
     "two things": {"measures": {"s": "theta"}},
     "an integer": {"measures": {"n": "max(n_steps)"}},
     "above zero": {"interval": 0.0},
     "is in values": {"values": {"s": 0.0}},
-    "nothing would be shared: 'm'": {"grid": {"m": [10.0, 20.0]}, "branch_at": 1.0},
 }
 NO_MEASURES = ("", "theta <", "first(theta)", "min(theta", "min(a, b)", "first(theta < x)")
 
@@ -136,15 +125,6 @@ def test_an_impossible_study_is_refused_with_a_message() -> None:
     with pytest.raises(ValueError, match="takes no unit but"):
         parse_measure("first(theta < 30kg)")
     Study(**good).check(known)
-    Study(grid={"m": [10.0], "M_3": [0.0, 1.0]}, branch_at=1.0).check(known)
-    assert [name for name in BRANCHING.grid if can_change(known[name])] == ["s", "M_3"]
-
-
-def test_a_sample_is_drawn_by_its_seed_and_within_its_bounds() -> None:
-    one, again, other = (sample({"theta_start": (1.0, 1.5), "s": (0.0, 0.1)}, 50, seed) for seed in (7, 7, 8))
-    assert (one["s"] == again["s"]).all() and (again["s"] != other["s"]).any()
-    theta = np.sort(Study(list=one).list["theta_start"])
-    assert (np.floor((theta - 1.0) / 0.01) == np.arange(50)).all()  # a Latin hypercube: one wheel in each fiftieth
 
 
 def test_a_wheel_that_leans_to_the_other_side_is_as_low_as_its_mirror_image(alone) -> None:

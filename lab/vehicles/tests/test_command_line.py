@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.typed import asked
 
 from lab.vehicles import example, options
 from lab.vehicles.master import Component, loaded
@@ -18,7 +19,6 @@ from wheelfmu.diagrams import style
 from wheelfmu.fmu.paths import ROOT
 
 VEHICLES = ROOT / "examples" / "vehicles"
-READS = [sys.executable, "-S", "-B", str(ROOT / "tools"), "example"]
 PAGES = (*VEHICLES.rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text() for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
@@ -34,7 +34,7 @@ PACKAGES = PACKAGE.findall(TEXT)
 
 def reads(line: str) -> subprocess.CompletedProcess:
     """The command line as it is checked before anything is built, by the standard library alone."""
-    return subprocess.run([*READS, *line.split()], capture_output=True, text=True)
+    return asked(ROOT, f"example {line}")
 
 
 @pytest.mark.parametrize("case", [case for case in CASES.values() if case["status"] == "2"], ids=lambda of: of["line"])

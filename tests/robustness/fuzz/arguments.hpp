@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <list>
 #include <tuple>
@@ -54,14 +55,15 @@ class Bytes : public FuzzedDataProvider {
 // A value of ordinary or extreme size for a variable: sizes that matter are the start values of the parameters as
 // modelDescription.xml has them, and what moves a wheel.
 inline double value_for(unsigned reference, Bytes& in) {
-  if (reference >= ref_first_output || in.chance(2)) {
+  const Row* const row = row_of(reference);
+  const bool loads = row && row->role == Role::input;
+  if (!row || row->role > Role::input || in.chance(2)) {
     // Extreme loads are limited: CVODE would honestly follow them through the million steps that a call may take.
     const double value = in.any();
-    return reference >= ref_first_input && std::isfinite(value) ? std::remainder(value, 1e4) : value;
+    return loads && std::isfinite(value) ? std::remainder(value, 1e4) : value;
   }
   if (in.chance(2)) return 0;
-  const double start = row_of(reference).start;
-  const double size = reference >= ref_first_input ? 10 : start == 0 ? 0.1 : start;
+  const double size = loads ? 10 : row->start == 0 ? 0.1 : row->start;
   const double value = size * in.factor();
   return in.chance(4) ? -value : value;
 }
@@ -91,12 +93,12 @@ class Arguments {
 
   void fill(std::vector<unsigned>& references) {
     constexpr unsigned choices[] = {ref_formulation, ref_friction_law, ref_method, ref_keep_contact};
-    constexpr unsigned firsts[] = {0, ref_first_input, ref_first_output};
-    constexpr unsigned counts[] = {ref_count, input_count, output_count};
     const unsigned kind = in_.below(4);
     for (std::size_t k = 0; k < count_; ++k) {
       const unsigned choice = in_.byte();
-      references[k] = kind == 3 ? choices[choice % 4] : firsts[kind] + choice % counts[kind];
+      references[k] = kind == 3   ? choices[choice % 4]
+                      : kind == 0 ? rows[choice % std::size(rows)].reference
+                                  : any_of(kind == 1 ? Role::input : Role::output, choice);
       if (choice >= 250) references[k] = choice * 0x01010101u;
       trace("  variable %u\n", references[k]);
     }

@@ -41,7 +41,8 @@ void read_all(fmi2Component c) {
   const int first = 1;
   const unsigned knowns[] = {ref_F_X, ref_m};
   const double seed = 1;
-  for (unsigned v = 0; v < ref_count; ++v) {
+  for (const Row& row : rows) {
+    const unsigned v = row.reference;
     double real = 0;
     int whole = 0;
     fmi2GetReal(c, &v, 1, &real);
@@ -52,7 +53,7 @@ void read_all(fmi2Component c) {
 }
 
 void push(fmi2Component c, Bytes& in) {
-  const unsigned input = ref_first_input + in.below(input_count);
+  const unsigned input = any_of(Role::input, in.byte());
   const int order = 1 + static_cast<int>(in.below(3));
   const double value = in.factor() - 1, slope = in.factor() - 1;
   if (in.chance(8)) fmi2SetReal(c, &input, 1, &value);

@@ -1,6 +1,7 @@
 // The oracles: log messages, serialized state, finite readings.
 #include "oracle.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -48,13 +49,14 @@ void receive(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status, 
 
 }  // namespace
 
-const Row& row_of(unsigned reference) {
-  static constexpr Row rows[] = {
-#define STORED(name, type, role, start, ...) {Type::type, start},
-#define COMPUTED(name, type, role) {Type::type},
-#include "variables.inc"
-  };
-  return rows[reference];
+const Row* row_of(unsigned reference) {
+  const Row* const row = std::ranges::find(rows, reference, &Row::reference);
+  return row == std::end(rows) ? nullptr : row;
+}
+
+unsigned any_of(Role role, unsigned choice) {
+  const Row* const first = std::ranges::find(rows, role, &Row::role);  // those of a role stand together
+  return first[choice % static_cast<unsigned>(std::ranges::count(rows, role, &Row::role))].reference;
 }
 
 Log& log() {
@@ -91,13 +93,13 @@ Digest digest(fmi2Component component) {
 
 std::vector<double> readings(const Slot& slot) {
   std::vector<double> values;
-  for (unsigned reference = 0; reference < ref_count; ++reference) {
+  for (const auto& [reference, type, role, start] : rows) {
     fmi2Status status = fmi2OK;
     double real = 0;
     int whole = 0;
-    if (row_of(reference).type == Type::boolean)
+    if (type == Type::boolean)
       status = fmi2GetBoolean(slot.component, &reference, 1, &whole);
-    else if (row_of(reference).type == Type::integer)
+    else if (type == Type::integer)
       status = fmi2GetInteger(slot.component, &reference, 1, &whole);
     else
       status = fmi2GetReal(slot.component, &reference, 1, &real);
@@ -118,8 +120,9 @@ double time_of(fmi2Component component) {
 }
 
 void check_finite(const std::vector<double>& values) {
-  for (unsigned reference = ref_first_output; reference < ref_count; ++reference)
-    expect(std::isfinite(values[reference]) || reference == ref_mu_required, "what can be read is finite");
+  for (std::size_t k = 0; k < values.size(); ++k)
+    expect(std::isfinite(values[k]) || rows[k].role <= Role::input || rows[k].reference == ref_mu_required,
+           "what can be read is finite");
 }
 
 }  // namespace fuzz

@@ -11,22 +11,29 @@ namespace fuzz {
 
 // Value references by name, as modelDescription.xml has them.
 enum : unsigned {
-#define STORED(name, ...) ref_##name,
-#define COMPUTED(name, ...) ref_##name,
+#define STORED(name, reference, ...) ref_##name = reference,
+#define COMPUTED(name, reference, ...) ref_##name = reference,
 #include "variables.inc"
-  ref_count,
-  ref_first_input = ref_F_X,
-  ref_first_output = ref_X_O,
 };
-constexpr unsigned input_count = ref_first_output - ref_first_input, output_count = ref_theta_ddot - ref_first_output;
 
 enum class Type { real, integer, boolean };
+enum class Role { parameter, tunable, input, output, local };
 // A row of modelDescription.xml; the start value of what can be set.
 struct Row {
+  unsigned reference;
   Type type;
+  Role role;
   double start = 0;
 };
-const Row& row_of(unsigned reference);
+inline constexpr Row rows[] = {
+#define STORED(name, reference, type, role, start, ...) {reference, Type::type, Role::role, start},
+#define COMPUTED(name, reference, type, role) {reference, Type::type, Role::role},
+#include "variables.inc"
+};
+// Null where no variable has the reference.
+const Row* row_of(unsigned reference);
+// One variable of the role.
+unsigned any_of(Role role, unsigned choice);
 
 // Call states of FMI 2.0.5, section 4.2.4.
 enum State : unsigned { instantiated, initialization, step_complete, step_failed, terminated, error };

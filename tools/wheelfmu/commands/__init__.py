@@ -3,8 +3,8 @@ lab/FOLDER/commands.
 
 What is typed is read by OPTIONS, of one parser for all, or by `reads`, with its help by `usage`; NEEDS, or `needs`, are
 the words of set-up for it; `main` carries it out and returns the exit status. What stands at the head of a module is of
-the standard library alone: arguments are read before anything is installed. One that FINISHES ends itself at Ctrl-C;
-one that STAYS works in the caller's folder, all others in the project's.
+the standard library alone: arguments are read before anything is installed. One that FINISHES ends itself at Ctrl-C,
+and INTERRUPTED is its word on that; one that STAYS works in the caller's folder, all others in the project's.
 """
 
 from pathlib import Path

@@ -2,8 +2,8 @@
 
   ./scripts/build [PRESET [CMAKE OPTION...]]
 
-PRESET: release (if none is given), or another of CMakePresets.json: dev, debug, asan, tidy, coverage. What the compiler
-prints is in build/PRESET.log."""
+PRESET: release (if none is given), or another of CMakePresets.json: dev, debug, asan, tidy, coverage, constants. The
+output of the compiler is in build/PRESET.log."""
 
 import json
 import os

@@ -1,5 +1,6 @@
-"""Checks format, style, types, imports and spelling of all files that git knows."""
+"""Checks format, style, types, imports, spelling and links of all files that git knows."""
 
+import re
 from argparse import Namespace
 from fnmatch import fnmatch
 from subprocess import PIPE, check_output
@@ -16,7 +17,24 @@ OPTIONS = {
 }
 GERSEMI = ("gersemi", "--line-length", "120", "--indent", "2")
 RUFF = ("ruff", "check", "-q", "--no-cache")  # its cache misses a folder that becomes a package or ceases to be one
+LINKS = ("lychee", "-qq", "--offline", "--include-fragments")  # files and headings; the web is not asked
 ELSEWHERE: dict[str, Any] = {"cwd": ROOT / "tools"}  # a module in the current folder would hide a package of its name
+
+
+def absent(listed: list[str]) -> list[str]:
+    """Folders that documents name and that may be missing: of the lab, without which all else works, and dist, which
+    a release fills."""
+    texts = [(ROOT / name).read_text(encoding="utf-8") for name in listed if name.endswith(".md")]
+    named = {folder for text in texts for folder in re.findall(r"\b(lab/\w+|dist)/", text)}
+    return sorted(folder for folder in named if not (ROOT / folder).exists())
+
+
+def imports(*configurations: str) -> None:
+    for path in configurations:
+        done = start("lint-imports", "--no-cache", path, stdout=PIPE, text=True, **ELSEWHERE)
+        if said := done.communicate()[0] * bool(done.returncode):
+            print(said)
+            raise Failed(1)
 
 
 def main(given: Namespace) -> None:
@@ -45,10 +63,8 @@ def main(given: Namespace) -> None:
         check("shellcheck", "-x", *shell)
     on(".github/workflows/*", "check-jsonschema", "--quiet", "--builtin-schema", "vendor.github-workflows")
     on("*", "codespell")
+    on("*.md", *LINKS, *(f"--exclude=/{folder}/" for folder in absent(listed)))
     if not given.files:
-        imports = start("lint-imports", "--no-cache", "../pyproject.toml", stdout=PIPE, text=True, **ELSEWHERE)
-        if said := imports.communicate()[0] * bool(imports.returncode):
-            print(said)
-            raise Failed(1)
         lab = ["../lab"] * (ROOT / "lab").exists()
+        imports("../pyproject.toml", *(f"{folder}/importlinter.toml" for folder in lab))
         check("mypy", "--no-error-summary", "--config-file", "../pyproject.toml", ".", *lab, "../examples", **ELSEWHERE)

@@ -6,19 +6,16 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from psutil import Process
 
 PR_SET_CHILD_SUBREAPER = 36
 PATIENCE = 5.0  # s, for a program to end by itself
-ROUND = 0.2  # s, between two looks for adopted processes that have ended
 SAFE = {"PYTHONSAFEPATH": "1"}  # the processes of pytest-xdist import nothing from the current folder
-STARTED: set[int] = set()
-starting = threading.Lock()
 
 
 class Failed(Exception):
@@ -28,54 +25,25 @@ class Failed(Exception):
         self.status = status
 
 
-def adopt() -> None:
-    """Processes whose parent has gone become this one's children; once they have ended, they vanish."""
-    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-    threading.Thread(target=bury, daemon=True).start()
-
-
-def table() -> Iterator[tuple[int, str, int, int]]:
-    """Of each process its number, state, parent and session."""
-    for entry in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):  # it has ended
-            state, parent, _, session = entry.read_text(errors="replace").rpartition(")")[2].split()[:4]
-            yield int(entry.parent.name), state, int(parent), int(session)
-
-
-def any_ended() -> bool:
-    """Whether a child is to be reaped: by one system call, where the table reads a file of every process."""
-    with suppress(ChildProcessError):  # there is no child
-        return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
-    return False
-
-
-def bury() -> None:
-    """Reaps adopted processes: those of other sessions that were not started here."""
-    me, own = os.getpid(), os.getsid(0)
-    while True:
-        time.sleep(ROUND)
-        for pid, state, parent, session in table() if any_ended() else ():
-            with suppress(ChildProcessError), starting:
-                if (state, parent) == ("Z", me) and session != own and pid not in STARTED:
-                    os.waitpid(pid, os.WNOHANG)
-
-
 def start(*words: object, **how: Any) -> subprocess.Popen:
-    with starting:
-        one = subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
-        STARTED.add(one.pid)
-    return one
+    return subprocess.Popen([str(word) for word in words], start_new_session=True, **how)
+
+
+def ended(program: subprocess.Popen) -> int:
+    """The exit status of a program at its end; 128 + n where signal n has ended it."""
+    code = program.wait()
+    return code if code >= 0 else 128 - code
 
 
 def status(*words: object, **how: Any) -> int:
     """Runs a program to its end."""
-    return start(*words, **how).wait()
+    return ended(start(*words, **how))
 
 
 def check(*words: object, **how: Any) -> None:
     """The same; Failed where it fails."""
     if code := status(*words, **how):
-        raise Failed(code if code > 0 else 128 - code)
+        raise Failed(code)
 
 
 def python(module: str, *words: object) -> list[str]:
@@ -90,34 +58,37 @@ def command(name: str, *words: object) -> list[str]:
 
 def side_by_side(*programs: list[str], **how: Any) -> None:
     """All run to their end; Failed if one has."""
-    codes = [one.wait() for one in [start(*words, **how) for words in programs]]
-    if any(codes):
-        raise Failed(1)
+    if code := max(map(ended, [start(*words, **how) for words in programs])):
+        raise Failed(code)
 
 
-def descendants() -> list[int]:
-    """Processes that descend from this one and run."""
-    parents = {pid: parent for pid, state, parent, _ in table() if state != "Z"}
-    found = [os.getpid()]
-    for one in found:
-        found += [pid for pid, parent in parents.items() if parent == one]
-    return found[1:]
+def running() -> list["Process"]:
+    """Descendants that run; not Python's tracker of resources, which ignores signals and ends with this process."""
+    import psutil
+
+    found = []
+    for one in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):
+            tracker = one.ppid() == os.getpid() and "multiprocessing.resource_tracker" in " ".join(one.cmdline())
+            if one.status() != psutil.STATUS_ZOMBIE and not tracker:
+                found.append(one)
+    return found
 
 
 def end_all() -> None:
     """Ends them: by SIGTERM, after some patience by SIGKILL."""
+    import psutil
+
     signal.setitimer(signal.ITIMER_REAL, 0)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
-    begin, signalled = time.monotonic(), set()
-    while left := descendants():
-        killed = time.monotonic() - begin > PATIENCE
-        for pid in left:
-            with suppress(ProcessLookupError):
-                if killed or pid not in signalled:
-                    os.kill(pid, signal.SIGKILL if killed else signal.SIGTERM)
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # one whose parent ends first stays a descendant
+    give_up, signalled = time.monotonic() + PATIENCE, set["Process"]()
+    while left := running():
+        late = time.monotonic() > give_up
+        for one in left:
+            with suppress(psutil.NoSuchProcess):
+                if late or one not in signalled:
+                    one.send_signal(signal.SIGKILL if late else signal.SIGTERM)
         signalled |= {*left}
-        with suppress(ChildProcessError):
-            while os.waitpid(-1, os.WNOHANG)[0]:
-                pass
         time.sleep(0.02)

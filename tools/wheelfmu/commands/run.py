@@ -1,11 +1,11 @@
 """Builds the FMU, simulates the paper's wheel or a different one, and draws the diagrams.
 
-  ./scripts/run                             the paper's two scenes: without and with rolling friction, s = 0.03 m
+  ./scripts/run                             the paper's two scenes: without and with rolling resistance, s = 0.03 m
   ./scripts/run v=18km/h                    a vehicle's wheel: upright, forward along X, from the origin
-  ./scripts/run s=0.01 theta_start=60deg    other values, in both scenes; without friction s stays 0
+  ./scripts/run s=0.01 theta_start=60deg    other values, in both scenes; without resistance s stays 0
   ./scripts/run body=torus m=12kg           a homogeneous body, whose moments of inertia follow from m, r_0 and r
   ./scripts/run slope=12% r_0=30cm          units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
-  ./scripts/run M_brake=20 stop_time=20     an input, which keeps its value; a longer run
+  ./scripts/run M_brake=20 stop_time=20     an input, constant over the run; a longer run
   ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road: the wheel slides where rolling would need more than mu_max
   ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   on its carrier: a locked wheel slides
   ./scripts/run guided=true v=10m/s psi_dot_guide=0.5 mu_max=0.3 mu_slide=0.25   steered: a turn that slides out
@@ -16,11 +16,12 @@
 It installs, builds, leaves wheel.fmu here, simulates both scenes with the fmpy command line, and writes into
 results/: wheel.html, a 3D page of the motion; the diagrams; free.csv and friction.csv. Any parameter or input of
 docs/variables.md can be given, each once. A warning names moments of inertia that no mass within the wheel's outline
-has. The last lines state the error of both runs, judged by another solver (docs/recipes.md).
+has. The error of both runs is estimated by another solver (docs/recipes.md). An input keeps its value for the whole
+run; docs/in_your_tool.md shows one that varies.
 
 The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
-packages into .venv, and compiles. cargo-web is among the packages because cargo downloads the pinned source of
-SUNDIALS, the solver.
+packages into .venv, and compiles. cargo is among the packages because it downloads the pinned source of SUNDIALS, the
+solver.
 
 With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r); all but the last can be
 given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m, Y_O = 0, whatever its
@@ -46,7 +47,7 @@ from wheelfmu.diagrams import start_values
 from wheelfmu.fmu.outputs import deliver, new_folder
 from wheelfmu.fmu.paths import ROOT
 
-SCENES = {"free": "No rolling friction", "friction": "Rolling friction"}
+SCENES = {"free": "No rolling resistance", "friction": "Rolling resistance"}
 PAGE = ROOT / "lab" / "lesson"
 # Of an earlier run, where this one has none; the paper's figures stay.
 OLD = ("free.*", "friction.*", "wheel.html", "error_time.*", "diagrams.*", "diagram_*")

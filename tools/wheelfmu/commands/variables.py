@@ -1,7 +1,7 @@
-"""Numbers modelDescription.xml anew after a variable has been added, moved or removed: value references, indices, GUID,
-ModelStructure with the dependencies measured on the built FMU, and the tables of docs/variables.md and of the FMU's
-page. Give a new variable no valueReference, and leave ModelStructure as it is. Numbers, builds, measures, builds
-again; a step that fails changes nothing."""
+"""Numbers modelDescription.xml anew after a variable has been added, moved or removed: the value references of new
+variables, all indices, GUID, ModelStructure with the dependencies measured on the built FMU, and the tables of
+docs/variables.md and of the FMU's page. Give a new variable no valueReference, and leave ModelStructure as it is.
+Numbers, builds, measures, builds again; a step that fails changes nothing."""
 
 from argparse import Namespace
 

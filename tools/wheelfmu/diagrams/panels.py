@@ -1,5 +1,5 @@
-"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, the ground's share, and those of a
-vehicle's engineer: speeds, slip, forces, carrier, distance.
+"""The panels of ./scripts/run, each drawn into axes: the paper's three, the path, the ground's share, and of other runs
+energy, forces and slip.
 
 Fixed axes X, Y, Z, Z up; rad and rad/s, with degrees on a second axis for theta. Friction and brake leave marks at the
 upper margin: a strip while omega_z is held, a tick for each change of its sign. A slide has a strip at the lower margin
@@ -15,13 +15,12 @@ from matplotlib.ticker import AutoMinorLocator, MaxNLocator, NullLocator, Scalar
 from numpy.typing import ArrayLike
 
 from wheelfmu.diagrams import style
-from wheelfmu.diagrams.scene import STILL, Array, Scene
+from wheelfmu.diagrams.scene import Array, Scene
 
 MARK_STEP = 5  # degrees of theta between the candidates for a mark along an arc
 MARK_ROOM = np.array([0.28, 0.06])  # of the axes: no second mark within this width and height
 NARROW = 0.25  # a bundle is narrow, and shown sheared in an inset, if shearing leaves less of its height
 INSET = (0.39, 0.40)  # width and height in the axes
-MINUS = "\N{MINUS SIGN}"
 MOST = 2.0  # coefficient of friction that no road has; without a normal force no coefficient would do
 ALIKE = 0.005  # of an axis: two curves are one to the eye
 DENSE, SOLID = 60, 400  # turns of a curve over time: from here on a thin line; from here on its envelope
@@ -32,8 +31,6 @@ LETTER = {
     "lambda_y": r"$\lambda_y$",
     "slip_x": "$u_x$",
     "slip_y": "$u_y$",
-    "M_guide_1": r"$M_{\mathrm{guide},1}$",
-    "M_guide_2": r"$M_{\mathrm{guide},2}$",
 }
 
 
@@ -125,7 +122,8 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
         marks += _over_time(ax, scene["time"], scene[name], style.colour(name))
         most = int(np.argmax(abs(scene[name])))
         high = scene[name][most] > 0
-        place, shift = {"va": "bottom" if high else "top", "ha": "center"}, (0, 3 if high else -3)
+        place = {"va": "bottom" if high else "top", **_inward(scene, scene["time"][most])}
+        shift = (2, 3 if high else -3)
         if abs(scene[name][most]) <= 1e-3 * scene.slip.max():  # a line along the axis, which the other one may cover
             most, place, shift = -1, {"va": "bottom", "ha": "right"}, (-2, 2)
         at, color = (scene["time"][most], scene[name][most]), style.colour(name)
@@ -133,46 +131,6 @@ def draw_slip(ax: Axes, scene: Scene) -> list[str]:
     _scale(ax.yaxis, 5, np.array([scene[name] for name in parts]), 0.01)
     ax.margins(y=0.2)
     return marks
-
-
-def draw_speeds(ax: Axes, scene: Scene) -> list[str]:
-    """The speed of O along e1, and that at which it would roll without slip."""
-    ax.set_ylabel("speed [m/s]")
-    marks = _time_axis(ax, scene)
-    rolling = r"$-R\,\omega_z$" if scene.straight else r"$\eta\,\omega_2 - \rho\,\omega_z$"
-    speeds = {rolling: (scene.rolling_speed, style.colour("omega_z")), "$v$": (scene.speed, style.colour("v"))}
-    marks += _curves(ax, scene, speeds)
-    if scene.straight:
-        return [*marks, r"$R = r_0 + r \sin\theta$, forward is positive"]
-    said = r"$\rho = r_0 + r \sin\theta$, $\eta = r \cos\theta$, $\omega_2 = \dot\psi \sin\theta$"
-    return [*marks, rf"$v$ along $e_1$; without slip it is $\eta\,\omega_2 - \rho\,\omega_z$: {said}"]
-
-
-def draw_velocities(ax: Axes, scene: Scene) -> list[str]:
-    """The velocity of O in the wheel's axes, and that along e1 without slip: a wheel that slides out of a turn."""
-    ax.set_ylabel("velocity [m/s]")
-    marks = _time_axis(ax, scene)
-    velocities = {
-        r"$-R\,\omega_z$": (scene.rolling_speed, style.colour("omega_z")),
-        "$v_x$": (scene.speed, style.colour("v_x")),
-        "$v_y$": (scene.sideways, style.colour("v_y")),
-    }
-    if np.ptp(scene["theta"]) > STILL or abs(np.cos(scene["theta"][0])) > 1e-9:
-        del velocities[r"$-R\,\omega_z$"]
-    marks += _curves(ax, scene, velocities)
-    return [*marks, "$v_x$ along $e_1$, $v_y$ to the left"]
-
-
-def draw_slip_ratio(ax: Axes, scene: Scene) -> list[str]:
-    """slip_x over v: -1 is locked; drawn up to 1."""
-    ax.set_ylabel("slip ratio")
-    marks = _time_axis(ax, scene)
-    ax.plot(scene["time"], np.clip(scene.slip_ratio, -1.0, 1.0), color=style.colour("slip_x"), linewidth=1.0)
-    _scale(ax.yaxis, 5, [-1.0, 0.0], steps=(1, 5, 10))
-    ax.margins(y=0.08)
-    over = bool((abs(scene.slip_ratio) > 1).any())
-    marks.append(r"slip ratio $(-R\,\omega_z - v)/v$: braking negative, $-1$ locked")
-    return marks + ["it is drawn from $-1$ to 1"] * over
 
 
 def draw_forces(ax: Axes, scene: Scene) -> list[str]:
@@ -193,28 +151,13 @@ def draw_forces(ax: Axes, scene: Scene) -> list[str]:
     return [*marks, *_curves(ax, scene, shown), *[words] * bool(words)]
 
 
-def draw_carrier(ax: Axes, scene: Scene) -> list[str]:
-    """The moment of the wheel carrier on the wheel, gyroscopic part included."""
-    ax.set_ylabel(r"moment of the carrier [N$\,$m]")
-    marks, names = _time_axis(ax, scene), ("M_guide_1", "M_guide_2")
-    return marks + _curves(ax, scene, {LETTER[name]: (scene[name], style.colour(name)) for name in names})
-
-
-def draw_distance(ax: Axes, scene: Scene) -> list[str]:
-    """How far O has come along the heading, back again counted off."""
-    ax.set_ylabel("distance [m]")
-    marks, time, v = _time_axis(ax, scene), scene["time"], scene.speed
-    distance = np.concatenate([[0.0], np.cumsum(np.diff(time) * (v[:-1] + v[1:]) / 2)])
-    marks += _over_time(ax, time, distance)
-    _scale(ax.yaxis, 5, distance, 1e-3)
-    (at, most), end = scene.peak(distance), (time[-1], distance[-1])
-    points = [end, (at, most)] if most - end[1] > 0.01 * np.ptp(distance) else [end]
-    for at, reached in points:
-        rises = reached >= distance[len(time) // 2]
-        look = {"ha": "right", "va": "bottom" if rises else "top"}
-        style.note(ax, f"{reached:.4g} m".replace("-", MINUS), (at, reached), (-2, 3 if rises else -3), **look)
-    ax.margins(y=0.22)
-    return marks
+def draw_energy(ax: Axes, scene: Scene) -> list[str]:
+    """The total energy of the wheel: what resistance, brake and slip take from it, and what loads do on it."""
+    marks = _time_axis(ax, scene)
+    ax.set_ylabel("energy $E$ [J]")
+    _scale(ax.yaxis, 5, scene["E"], 1e-6)
+    ax.margins(y=0.1)
+    return marks + _over_time(ax, scene["time"], scene["E"])
 
 
 def _inward(scene: Scene, at: float) -> dict[str, str]:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), the path, forces, and more where it helps.
+"""Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), path and ground, energy, forces, slip.
 
     python -m wheelfmu.diagrams.paper FOLDER [argument of ./scripts/run]...
 
-The motions are those of wheel.fmu with these arguments, without (s = 0) and with rolling friction, read densely;
+The motions are those of wheel.fmu with these arguments, without (s = 0) and with rolling resistance, read densely;
 FOLDER/SCENE.error has how far they can be trusted. The paper's two scenes make paper_diagrams, paper_path_and_ground
 and fig_1 ... fig_6; others make diagrams and diagram_NAME_SCENE, with the panels that have content, and leave those of
 the paper in place. Of two scenes that look alike one is drawn. All as SVG and PNG. Fixed axes X, Y, Z, Z up; rad,
@@ -27,6 +27,7 @@ from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
 from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, values, variables
+from wheelfmu.fmu.outputs import worded
 from wheelfmu.truth.motion import Library
 
 SETTINGS = variables("parameter", "input")
@@ -60,11 +61,6 @@ def free(scene: Scene) -> bool:
     return not scene.guided and not scene.straight
 
 
-def steered(scene: Scene) -> bool:
-    """Whether a wheel carrier changes tilt or heading."""
-    return scene.guided and not scene.straight
-
-
 def curved(scene: Scene) -> bool:
     return bool(np.ptp(scene["psi"]) > 1e-6) or slides_across(scene)
 
@@ -75,36 +71,24 @@ def turns(scene: Scene) -> bool:
 
 
 def travels(scene: Scene) -> bool:
-    return free(scene) and bool(np.ptp(scene["X_O"]) > 1e-3 * scene.value("r_0"))
+    return bool(np.ptp(scene["X_O"]) > 1e-3 * scene.value("r_0"))
 
 
 def tilts(scene: Scene) -> bool:
     return bool(np.ptp(scene["theta"]) > 1e-6)
 
 
-def slows(scene: Scene) -> bool:
-    """Whether a wheel that keeps tilt and heading changes its speed."""
-    return scene.straight and bool(np.ptp(scene.speed) > 1e-6 * abs(scene.speed).max())
-
-
-def slides_along(scene: Scene) -> bool:
-    return bool(scene.slides.any() and abs(scene["slip_x"]).max() > 0.01 * scene.slip.max())
-
-
-def runs_apart(scene: Scene) -> bool:
-    """Whether speed and spin show the motion: it slows down straight ahead, or slides along."""
-    return not steered(scene) and (slows(scene) or slides_along(scene))
-
-
-def brakes(scene: Scene) -> bool:
-    """Whether it slides forward with less spin than rolling needs, so that a slip ratio says how much."""
-    least = -1e-6 * abs(scene.speed).max()
-    forward = min(scene.speed.min(), scene["slip_x"].min(), scene.rolling_speed.min()) >= least
-    return scene.straight and slides_along(scene) and bool(forward)
-
-
 def slides_across(scene: Scene) -> bool:
     return bool(abs(scene["slip_y"]).max() > 1e-9 * max(scene.slip.max(), 1e-9))
+
+
+def slips(scene: Scene) -> bool:
+    return bool(scene.slides.any())
+
+
+def loses_or_gains(scene: Scene) -> bool:
+    """Whether the energy changes by more than rounding and the solver's error."""
+    return bool(np.ptp(scene["E"]) > 1e-6 * scene.value("m") * scene.value("g") * scene.value("r_0"))
 
 
 def pushes(scene: Scene) -> bool:
@@ -113,16 +97,6 @@ def pushes(scene: Scene) -> bool:
     parts = np.array([scene[name] for name in ("lambda_x", "lambda_y", "lambda_3")])
     limited = scene.value("mu_max") > 0 and abs(parts[:2]).max() > 1e-6 * weight
     return not free(scene) and bool(limited or np.ptp(parts, axis=1).max() > 1e-6 * weight)
-
-
-def carries(scene: Scene) -> bool:
-    """Whether a wheel carrier bears a moment."""
-    size = scene.value("m") * scene.value("g") * scene.value("r_0")
-    return scene.guided and max(abs(scene[name]).max() for name in ("M_guide_1", "M_guide_2")) > 1e-6 * size
-
-
-def straight(scene: Scene) -> bool:
-    return scene.straight
 
 
 PAPERS = (
@@ -134,14 +108,10 @@ OTHERS = (
     Panel("path", "Path of the contact point", 67.0, panels.draw_path, curved),
     Panel("ground", r"$N(t)$ and required $\mu(t)$", 67.0, panels.draw_ground, free),
 )
-DRIVEN = (  # what a vehicle's engineer reads
-    Panel("velocities", "Velocity of $O$ in the wheel's axes", 57.0, panels.draw_velocities, steered),
-    Panel("speeds", r"Speed and rolling speed", 57.0, panels.draw_speeds, runs_apart),
-    Panel("slip_ratio", "Slip ratio", 57.0, panels.draw_slip_ratio, brakes),
-    Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, slides_across),
+FURTHER = (  # of runs that are not the paper's
+    Panel("energy", r"Energy $E(t)$", 57.0, panels.draw_energy, loses_or_gains),
     Panel("forces", "Forces of the ground", 57.0, panels.draw_forces, pushes),
-    Panel("carrier", "Moment of the wheel carrier", 57.0, panels.draw_carrier, carries),
-    Panel("distance", "Distance along the heading", 57.0, panels.draw_distance, straight),
+    Panel("slip", "Slip at the contact", 57.0, panels.draw_slip, slips),
 )
 
 
@@ -225,7 +195,7 @@ def start_of(scene: Scene) -> str:
 
 def title_of(scene: Scene) -> str:
     s = scene.value("s")
-    return rf"Rolling friction, $s = {short(s)}$ m" if s > 0 else r"No rolling friction, $s = 0$"
+    return rf"Rolling resistance, $s = {short(s)}$ m" if s > 0 else r"No rolling resistance, $s = 0$"
 
 
 def fate_of(scene: Scene) -> list[str]:
@@ -316,7 +286,7 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
     for ax in axes.flat[len(cells) :]:
         ax.remove()
     for panel, (left, right) in zip(drawn, axes, strict=True) if two else ():
-        if panel in DRIVEN:
+        if panel in FURTHER:
             limits = np.array([left.get_ylim(), right.get_ylim()])
             for ax in (left, right):
                 ax.set_ylim(limits[:, 0].min(), limits[:, 1].max())
@@ -342,8 +312,8 @@ def draw(stem: Path, scenes: Sequence[Scene], drawn: Sequence[Panel], paper: boo
 
 def panels_of(scenes: Sequence[Scene]) -> tuple[Panel, ...]:
     """Of runs that are not the paper's: those with content in one of the scenes."""
-    found = tuple(panel for panel in PAPERS + OTHERS + DRIVEN if any(panel.applies(scene.moving) for scene in scenes))
-    return found or DRIVEN[-1:]
+    found = tuple(panel for panel in PAPERS + OTHERS + FURTHER if any(panel.applies(scene.moving) for scene in scenes))
+    return found or PAPERS[:1]
 
 
 def alike(one: Scene, other: Scene) -> bool:
@@ -364,7 +334,7 @@ def pictures(scenes: Sequence[Scene], out: Path) -> list[tuple]:
     """Arguments of draw for sheets, then each panel of each scene; names show whether the scenes are the paper's."""
     paper = is_paper(scenes)
     if not paper and len(scenes) == 2 and alike(*scenes):
-        scenes = [replace(scenes[1], alone="without rolling friction the diagrams look alike")]
+        scenes = [replace(scenes[1], alone="without rolling resistance the diagrams look alike")]
     every = PAPERS if paper else panels_of(scenes)
     sheets = {"paper_diagrams": PAPERS, "paper_path_and_ground": OTHERS} if paper else {"diagrams": every}
     wanted: list[tuple] = [(out / name, scenes, drawn, paper) for name, drawn in sheets.items()]
@@ -416,4 +386,5 @@ def still(scene: Scene) -> str:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), values(sys.argv[2:]))
+    with worded("run"):
+        main(Path(sys.argv[1]), values(sys.argv[2:]))

@@ -20,6 +20,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
 from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
+from wheelfmu.fmu.outputs import worded
 from wheelfmu.truth.trust import DEFAULT, REPEATS, Wheel, trust
 
 BESIDE = 0.06  # decades: marks that are closer are one
@@ -140,7 +141,7 @@ def main(folder: Path, given: dict[str, str]) -> None:
     scales = np.array([r_0 + r, 1.0, fall, fall])
     with TemporaryDirectory() as folder_of_fmu:
         wheel = Wheel(extract(str(ROOT / "wheel.fmu"), folder_of_fmu))
-        for name, label in (("free", "No rolling friction"), ("friction", "Rolling friction")):
+        for name, label in (("free", "No rolling resistance"), ("friction", "Rolling resistance")):
             start = {"s": str(PAPER_S)} | given | ({"s": "0"} if name == "free" else {})
             truth = wheel.judge(start, times)
             if len(truth.rows) > 1:
@@ -153,4 +154,5 @@ def main(folder: Path, given: dict[str, str]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), values(sys.argv[2:]))
+    with worded("run"):
+        main(Path(sys.argv[1]), values(sys.argv[2:]))

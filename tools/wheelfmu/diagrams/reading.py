@@ -12,9 +12,8 @@ from wheelfmu.diagrams.start_values import variables
 from wheelfmu.fmu.values import POINTS, nutation
 from wheelfmu.truth.motion import Library, Run
 
-READ = ["X_O", "Y_O", "X_C", "Y_C", "X_O_dot", "Y_O_dot", "psi", "theta", "psi_dot", "phi_dot", "omega_z"]
-READ += ["lambda_x", "lambda_y", "lambda_3", "mu_required", "slip_x", "slip_y", "contact_mode", "friction_mode"]
-READ += ["M_guide_1", "M_guide_2"]
+READ = ["X_O", "Y_O", "X_C", "Y_C", "psi", "theta", "psi_dot", "phi_dot", "omega_z"]
+READ += ["lambda_x", "lambda_y", "lambda_3", "mu_required", "slip_x", "slip_y", "contact_mode", "friction_mode", "E"]
 LEAST, MOST = 2000, 60_000  # rows of a run
 TRANSITION = re.compile(r"t = (\S+) s: (?:stick|release|reversal|the wheel (?:starts|stops|slides))")
 ENDING = re.compile(r"The wheel (.+?) at t = (\S+) s")

@@ -123,32 +123,9 @@ class Scene:
         return self.value("guided") > 0
 
     @property
-    def speed(self) -> Array:
-        """v of O along e1 in m/s."""
-        psi = self["psi"]
-        return self["X_O_dot"] * np.cos(psi) + self["Y_O_dot"] * np.sin(psi)
-
-    @property
-    def sideways(self) -> Array:
-        """The velocity of O to the left of e1 in m/s."""
-        psi = self["psi"]
-        return self["Y_O_dot"] * np.cos(psi) - self["X_O_dot"] * np.sin(psi)
-
-    @property
     def straight(self) -> bool:
         """Whether tilt and heading keep their values."""
         return bool(max(np.ptp(self["theta"]), np.ptp(self["psi"])) <= STILL)
-
-    @property
-    def rolling_speed(self) -> Array:
-        """The speed in m/s at which the wheel would not slip along e1: of a guided wheel R |omega_z|."""
-        return self.speed - self["slip_x"]
-
-    @property
-    def slip_ratio(self) -> Array:
-        """kappa = -slip_x / v, braking negative; nan where the wheel stands."""
-        still = abs(self.speed) < 1e-6 * abs(self.speed).max(initial=1e-300)
-        return np.divide(-self["slip_x"], self.speed, out=np.full(len(still), np.nan), where=~still)
 
     @property
     def one_arc(self) -> bool:

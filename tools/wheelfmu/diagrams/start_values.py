@@ -38,7 +38,7 @@ RUN = {
     "output_interval": Variable("output_interval", "run", "Real", "s", "0.01", "0", "", "Time between rows, above 0"),
 }
 CHECKS = {"estimate": "1", "methods": "2", "no": "3"}
-ABOUT_CHECK = "After the run: 1 estimate of its error, 2 methods: error over time of each, 3 no estimate"
+ABOUT_CHECK = "After the run: 1 estimate (of the error), 2 methods (error over time of each), 3 no (neither)"
 CHECK = Variable("error", "run", "Integer", "", CHECKS["estimate"], "", "", ABOUT_CHECK)
 ABOUT_SPEED = "Initial speed, forward: upright, along X, from the origin, unless the start values are given"
 SPEED = Variable("v", "run", "Real", "m/s", "", "", "", ABOUT_SPEED)
@@ -97,7 +97,7 @@ def values(arguments: list[str]) -> dict[str, str]:
         size = {name: float(found.get(name, takes[name].start)) for name in ("m", "r_0", "r")}
         found |= {name: repr(value) for name, value in moments(solid, **size).items()}
     if float(found.get("s", 1)) <= 0:
-        raise Fault("s must be above 0 here: the scene without friction is drawn beside it anyway.")
+        raise Fault("s must be above 0 here: the scene without rolling resistance is drawn beside it anyway.")
     own = {name: takes[name].number_of(found.get(name, v.start)) for name, v in variables("parameter").items()}
     if "output_interval" not in found:
         longest = float(RUN["output_interval"].start) * min(1.0, scale(own, s=1))

@@ -15,7 +15,7 @@ from pathlib import Path
 from subprocess import PIPE, STDOUT
 from typing import Any, TextIO
 
-from .outputs import alone
+from .outputs import alone, named
 from .paths import build_folder
 
 CMAKE = ("cmake", "-G", "Unix Makefiles")
@@ -58,7 +58,7 @@ def build(
     to_build = ["cmake", "--build", *(building or [folder]), "--parallel", os.cpu_count()]
     if not sys.stderr.isatty():  # without a progress bar
         print(f"Building {name}.", flush=True)
-    with alone(folder):
+    with alone(folder), named(log):
         without_stale_cache(folder, source, stale)
         with whole(folder), log.open("w", encoding="utf-8") as file:
             done = all(succeeds(name, [str(word) for word in step], source, file) for step in (to_configure, to_build))

@@ -3,19 +3,68 @@
 Standard library alone.
 """
 
+import errno
 import os
 import shutil
+import signal
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from hashlib import sha256
 from pathlib import Path
+from secrets import token_hex
 
 from wheelfmu.fmu.values import Fault
 
 BEGIN = time.monotonic()
+# Of a disk or a place, not of a program: full, out of order, another user's, something else.
+OF_PLACES = (
+    "EACCES",
+    "EPERM",
+    "EROFS",
+    "ENOSPC",
+    "EDQUOT",
+    "EFBIG",
+    "EIO",
+    "EEXIST",
+    "EISDIR",
+    "ENOTDIR",
+    "ENAMETOOLONG",
+)
+
+
+@contextmanager
+def worded(name: str, status: int = 2) -> Iterator[None]:
+    """A Fault, or an error of a disk or a place, ends the program `name` with one sentence, the end of its reader with
+    none."""
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
+    except Fault as fault:
+        print(f"{name}: {fault}", file=sys.stderr)
+        sys.exit(status)
+    except OSError as fault:
+        kind = errno.errorcode.get(fault.errno or 0)
+        if kind in OF_PLACES:
+            print(f"{name}: {fault.filename or 'the output'}: {fault.strerror}.", file=sys.stderr)
+        elif kind != "EPIPE":
+            raise
+        if kind == "EPIPE" or not fault.filename:  # what is not printed yet is not tried again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(status if kind != "EPIPE" else 128 + signal.SIGPIPE)
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """An error of a disk that is full, which has no name, gets that of the file."""
+    try:
+        yield
+    except OSError as fault:
+        fault.filename = fault.filename or str(path)
+        raise
 
 
 def check(
@@ -34,28 +83,35 @@ def check(
 @contextmanager
 def fresh(path: Path) -> Iterator[Path]:
     """A path to write to, beside `path`; what is written moves into its place if no error is raised."""
+    if path.is_dir():
+        raise Fault(f"{path} is a folder, and a file is to be written there: rename or delete the folder.")
     path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{os.getpid()}.{path.name}")
+    new = path.with_name(f".{token_hex(4)}.{path.name}")  # of no other process, in another container either
     try:
-        yield new
-        new.replace(path)
+        with named(path):
+            yield new
+            new.replace(path)
     finally:
         new.unlink(missing_ok=True)
 
 
 @contextmanager
 def alone(place: Path) -> Iterator[None]:
-    """One process of this machine at a time uses a place; the others wait."""
-    import fcntl
+    """One process at a time uses a place; the others wait. The lock is beside it, the same for all users."""
+    from filelock import FileLock, Timeout
 
-    name = sha256(str(place.resolve()).encode()).hexdigest()[:16]
-    with (Path(tempfile.gettempdir()) / f"wheel-{os.getuid()}-{name}.lock").open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
-            fcntl.flock(file, fcntl.LOCK_EX)
+    place = place.resolve()
+    place.parent.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(place.with_name(f".{place.name}.lock"), mode=0o666)
+    try:
+        lock.acquire(blocking=False)
+    except Timeout:
+        print(f"Waiting for another process that writes to {place}.", file=sys.stderr)
+        lock.acquire()
+    try:
         yield
+    finally:
+        lock.release()
 
 
 @contextmanager
@@ -65,7 +121,7 @@ def new_folder(place: Path) -> Iterator[Path]:
     with alone(place):
         for left in place.glob(".new-*"):
             shutil.rmtree(left)
-        with tempfile.TemporaryDirectory(dir=place, prefix=".new-") as new:
+        with named(place), tempfile.TemporaryDirectory(dir=place, prefix=".new-") as new:
             yield Path(new)
 
 

@@ -2,11 +2,11 @@
 
 No paper equation; SI units as in the description. A row of a parameter or input, and of a calculated variable:
 
-    STORED(name, type, role, start, min, max)    a limit that the description does not set is `unlimited`
-    COMPUTED(name, type, role)
+    STORED(name, reference, type, role, start, min, max)    a limit that the description does not set is `unlimited`
+    COMPUTED(name, reference, type, role)
 
-Rows stand in the order of their value references, which count from zero: parameters, inputs, outputs, locals. Both
-macros end with the rows.
+Rows stand in the order of the description: parameters, inputs, outputs, locals. A value reference is any number that
+no other variable has. Both macros end with the rows.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ BOOLEAN = {"false": "0", "true": "1"}
 def check(variables: list[ElementTree.Element]) -> None:
     """One sentence for a description that the rows cannot follow."""
     roles = [ROLES.index(v.attrib["causality"]) for v in variables]
-    if [int(v.attrib["valueReference"]) for v in variables] != list(range(len(variables))) or roles != sorted(roles):
+    references = [v.get("valueReference", "") for v in variables]
+    if len({*references}) < len(references) or not all(map(str.isdigit, references)) or roles != sorted(roles):
         order = ", ".join(ROLES)
-        raise SystemExit(f"modelDescription.xml must number its variables from 0 and list them in the order {order}.")
+        raise SystemExit(f"modelDescription.xml must number its variables and list them in the order {order}.")
     for v in variables:
         if v[0].tag not in TYPES or not re.fullmatch(r"[A-Za-z]\w*", v.attrib["name"]):
             raise SystemExit(f'The rows cannot have "{v.get("name")}" of type {v[0].tag} in modelDescription.xml.')
@@ -35,13 +36,14 @@ def check(variables: list[ElementTree.Element]) -> None:
 def row(variable: ElementTree.Element) -> str:
     (typed,) = variable
     name, kind, role = variable.get("name"), typed.tag.lower(), variable.get("causality")
+    named = f"{name}, {variable.get('valueReference')}"
     if role in ("output", "local"):
-        return f"COMPUTED({name}, {kind}, {role})\n"
+        return f"COMPUTED({named}, {kind}, {role})\n"
     if variable.get("variability") == "tunable":
         role = "tunable"
     start = typed.attrib["start"]
     low, high = ("0", "1") if kind == "boolean" else (typed.get("min", "-unlimited"), typed.get("max", "unlimited"))
-    return f"STORED({name}, {kind}, {role}, {BOOLEAN.get(start, start)}, {low}, {high})\n"
+    return f"STORED({named}, {kind}, {role}, {BOOLEAN.get(start, start)}, {low}, {high})\n"
 
 
 if __name__ == "__main__":

@@ -52,6 +52,7 @@ def write_report(released: Path, **found: object) -> None:
 
 def main() -> None:
     folder.described()
+    source = folder.commit()
     with tempfile.TemporaryDirectory() as place:
         scratch = Path(place)
         step("the libraries of all platforms")
@@ -67,8 +68,9 @@ def main() -> None:
         subprocess.run(["bash", "scripts/build", "release"], check=True)
         scenes = platforms.scenes(OUT)
     write_report(released, libraries=table, twice=twice, **scenes)
-    step("the site and the folder")
+    step("the site, dist/ and the folder")
     subprocess.run(["bash", "scripts/site"], check=True)
+    folder.distribute(released, source)
     step("done")
     print("What was run and what was only built: docs/results/platforms.md.")
     folder.publish(released, ROOT / "build" / "site")

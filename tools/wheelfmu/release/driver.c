@@ -10,8 +10,8 @@
 
 /* Value references by name, as modelDescription.xml has them. */
 enum {
-#define STORED(name, ...) ref_##name,
-#define COMPUTED(name, ...) ref_##name,
+#define STORED(name, reference, ...) ref_##name = reference,
+#define COMPUTED(name, reference, ...) ref_##name = reference,
 #include "variables.inc"
 };
 /* All outputs: of each calculated variable by its role and type. */
@@ -20,7 +20,7 @@ enum {
 #define local_integer(reference)
 static const fmi2ValueReference outputs[] = {
 #define STORED(...)
-#define COMPUTED(name, type, role) role##_##type(ref_##name)
+#define COMPUTED(name, reference, type, role) role##_##type(reference)
 #include "variables.inc"
 };
 enum { output_count = sizeof outputs / sizeof *outputs };

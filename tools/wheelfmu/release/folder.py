@@ -1,4 +1,5 @@
-"""The folder that is given away: the archive, the site, notes from CHANGELOG.md, and the sums of all three."""
+"""What a release gives away: dist/, the files in the repository with a page about them; and a folder with the archive,
+the site, notes from CHANGELOG.md, and the sums of all three."""
 
 from __future__ import annotations
 
@@ -6,9 +7,11 @@ import re
 import shutil
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
-from wheelfmu.publishing.markdown import ROOT
+from wheelfmu.fmu.outputs import deliver
+from wheelfmu.publishing.markdown import ROOT, page
 
 VERSIONS = {
     "CMakeLists.txt": r"project\(wheel VERSION (\S+)",
@@ -16,6 +19,9 @@ VERSIONS = {
     "CITATION.cff": r"^version: (\S+)",
 }
 DRAFT = "Unreleased"
+DIST = ROOT / "dist"
+LESSON = "wheel_lesson.html"
+WRITTEN = ("dist", "docs/results/platforms.md")  # by a release, and committed after it
 
 
 def version(root: Path = ROOT) -> str:
@@ -64,11 +70,45 @@ def described() -> tuple[str, str]:
     return number, text
 
 
+def commit() -> str:
+    """The commit that the sources are; SystemExit where they are none, since dist/ could not name it."""
+    others = [f":(exclude){name}" for name in WRITTEN]
+    command = ["git", "status", "--porcelain", "--", ".", *others]
+    status = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if status.returncode or status.stdout:
+        raise SystemExit("A release is built from a commit, which dist/README.md names: commit all changes first.")
+    return subprocess.check_output(["git", "rev-parse", "HEAD"], cwd=ROOT, text=True).strip()
+
+
+def sum_of(file: Path) -> str:
+    return sha256(file.read_bytes()).hexdigest()
+
+
+def page_of(place: Path, number: str, source: str) -> str:
+    """The page about the files of a folder."""
+    files = [
+        {"name": path.name, "size": f"{path.stat().st_size / 1e3:.0f}", "sum": sum_of(path)}
+        for path in sorted(place.iterdir())
+        if path.name != "README.md"
+    ]
+    lesson = any(file["name"] == LESSON for file in files)
+    return page("dist.md.j2", version=number, commit=source, files=files, lesson=lesson)
+
+
+def distribute(fmu: Path, source: str) -> None:
+    """Writes dist/, the lesson too where the lab has it."""
+    deliver(fmu, DIST / "wheel.fmu")
+    if (ROOT / "lab" / "lesson").exists():
+        subprocess.run(["bash", "scripts/page", DIST / LESSON, "--overwrite"], cwd=ROOT, check=True)
+    (DIST / "README.md").write_text(page_of(DIST, version(), source), encoding="utf-8")
+
+
 def publish(fmu: Path, site: Path) -> None:
     number, text = described()
     out = (ROOT / "build" / f"wheel-{number}").relative_to(Path.cwd())
     write(out, fmu, site, text)
-    print(f"{out} holds {', '.join(sorted(path.name for path in out.iterdir()))}. To tag it:")
+    print("dist/ has the files for the repository. Commit them and docs/results/platforms.md as the release.")
+    print(f"{out} holds {', '.join(sorted(path.name for path in out.iterdir()))}. To tag that commit:")
     print(f"  git tag -a v{number} -F {out / 'NOTES.md'} --cleanup=whitespace")
     print(f"  git push origin v{number}")
     print(".github/workflows/release.yml attaches the same files, built anew; elsewhere attach those of the folder.")

@@ -1,6 +1,6 @@
 """Whole motions of the FMU against closed forms: how far apart they are; the critical spin measured from both sides.
 
-`judged`: the wheel with whose constants the closed form is written (support/closed_forms.py).
+`judged`: the wheel with whose constants the closed form is written (closed_forms.py).
 """
 
 from math import pi

@@ -14,6 +14,8 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
+from wheelfmu.fmu.outputs import fresh
+
 FOLDERS = 4
 
 
@@ -38,8 +40,6 @@ def kept(question: tuple, answer: Callable[[], Any]) -> Any:
     if file.exists():
         return pickle.loads(file.read_bytes())
     found = answer()
-    file.parent.mkdir(parents=True, exist_ok=True)  # another checkout may have removed it meanwhile
-    written = file.with_suffix(f".{os.getpid()}")
-    written.write_bytes(pickle.dumps(found))
-    written.replace(file)  # at once: other processes read it
+    with fresh(file) as new:  # in a folder that another checkout may have removed meanwhile
+        new.write_bytes(pickle.dumps(found))
     return found

@@ -1,7 +1,8 @@
 """The three scenes of docs/benchmark.md, and how far a solution is from the reference values."""
 
+import csv
+
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from wheelfmu.fmu.paths import ROOT
@@ -29,16 +30,21 @@ def by_reference(scene: Scene, tolerance: float) -> Solution:
     return solve(scene.wheel, scene.motion, [0.0, *INSTANTS], scene.inputs.for_reference(), rtol=tolerance)
 
 
+def rows(name: str) -> list[dict[str, str]]:
+    with (DATA / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return [*csv.DictReader(file)]
+
+
 def table(name: str) -> NDArray[np.float64]:
     """The reference values, a row for each instant."""
-    return pd.read_csv(DATA / "benchmark.csv").query("scene == @name")[list(OUTPUTS)].to_numpy()
+    return np.array([[float(row[output]) for output in OUTPUTS] for row in rows("benchmark") if row["scene"] == name])
 
 
 def transitions(name: str) -> list[tuple[float, int]]:
     """Instant, and sign of omega_z after it."""
     if name != "friction":
         return []
-    return [tuple(row) for row in pd.read_csv(DATA / "benchmark_transitions.csv").itertuples(index=False)]
+    return [(float(t), int(mode)) for t, mode in (row.values() for row in rows("benchmark_transitions"))]
 
 
 def errors(name: str, found: Run | Solution) -> tuple[float, float | None]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wheelfmu.fmu.driver import Values
-from wheelfmu.truth.reference import Road, Solution, Start, Wheel, solve
+from wheelfmu.truth.reference import Road, Solution, Start, Wheel, solve, solve_stiffly
 from wheelfmu.truth.reference.carried import Carried, Piece
 
 from .kept import kept
@@ -66,6 +66,12 @@ class Started:
         wheel, motion, road = self.wheel, self.motion, self.road
         question = (wheel, motion, asked, self.inputs.pieces, road, sorted(how.items()))
         return kept(question, lambda: solve(wheel, motion, asked, self.inputs.for_reference(), road, **how))
+
+    def solved_stiffly(self, times: ArrayLike) -> Solution:
+        """Under a regularized law, however narrow, rolling without inputs."""
+        asked, omega_s = [float(t) for t in np.ravel(times)], float(self.start.get("omega_s", 1e-3))
+        wheel, motion = self.wheel, self.motion
+        return kept(("stiffly", wheel, motion, asked, omega_s), lambda: solve_stiffly(wheel, motion, asked, omega_s))
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
 """Numbers an FMI 2.0 description: what follows from the order of its variables and from dependencies by name.
 
-No paper equation. A value reference is the variable's place, from 0; an index is that place, from 1. Whoever adds a
-variable leaves `valueReference` out, writes names where FMI wants indices (derivative="X_O", dependencies="m r_0"), and
-leaves ModelStructure alone. The wheel's modelDescription.xml and those of the examples are numbered here.
+No paper equation. A value reference stays with its variable; a new variable gets the next one, from 0. An index is the
+variable's place, from 1. Whoever adds a variable leaves `valueReference` out, writes names where FMI wants indices
+(derivative="X_O", dependencies="m r_0"), and leaves ModelStructure alone. The wheel's modelDescription.xml and those of
+the examples are numbered here.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import re
 import uuid
 from collections.abc import Callable, Collection, Mapping
+from itertools import count
 from xml.etree import ElementTree
 
 # Of each section of ModelStructure and each unknown in it: the names that it depends on. An unknown that is not listed
@@ -17,19 +19,27 @@ from xml.etree import ElementTree
 Dependencies = Mapping[str, Mapping[str, Collection[str]]]
 # What a master relies on: a library and a description that differ here do not belong together.
 BINDING = ("ModelExchange", "CoSimulation", "UnitDefinitions", "ModelVariables", "ModelStructure")
-TAG = re.compile(r'<ScalarVariable name="([^"]*)"(?: valueReference="\d+")?')
+TAG = re.compile(r'<ScalarVariable name="([^"]*)"(?: valueReference="(\d+)")?')
+UNKNOWN = re.compile(r'<Unknown index="(\d+)"[^>]*/><!-- (\w+) -->')
 
 
-def names_by_index(root: ElementTree.Element) -> Callable[[str], list[str]]:
-    """Reads indices of the present numbering, or names, as names; what is gone is left out."""
-    old: dict[str, str] = {}
-    for v in root.iter("ScalarVariable"):
-        name, reference = v.attrib["name"], v.get("valueReference")
+def names_by_index(text: str) -> Callable[[str], list[str]]:
+    """Reads indices of the numbering before variables were added, moved or removed, or names, as names; what is gone is
+    left out. Indices are those of the variables with a reference; unknowns stand beside theirs."""
+    tags: list[tuple[str, str]] = TAG.findall(text)
+    by_reference: dict[str, str] = {}
+    for name, reference in tags:
+        if reference and (other := by_reference.setdefault(reference, name)) != name:
+            raise SystemExit(f"{other} and {name} have one valueReference: leave it out of the new one.")
+    old = {name: name for name, _ in tags}
+    if len(old) < len(tags):
+        raise SystemExit("modelDescription.xml has two variables of one name.")
+    old |= {str(index): name for index, name in enumerate(by_reference.values(), 1)}
+    for index, name in UNKNOWN.findall(text):
         if name in old:
-            raise SystemExit("modelDescription.xml has two variables of one name.")
-        old[name] = name
-        if reference and old.setdefault(index := str(int(reference) + 1), name) != name:
-            raise SystemExit(f"{old[index]} and {name} have one valueReference: leave it out of the new one.")
+            old[index] = name
+        else:
+            old.pop(index, None)
 
     def names(tokens: str) -> list[str]:
         for token in tokens.split():
@@ -85,9 +95,10 @@ def structure(sections: dict[str, list[str]], index: dict[str, int], depends: De
 def numbered(text: str, depends: Dependencies | None = None) -> str:
     """The description with all its numbers and its GUID; dependencies as given, else those that it declares."""
     root = ElementTree.fromstring(text.encode())
-    names = names_by_index(root)
+    names = names_by_index(text)
     index = {v.attrib["name"]: place for place, v in enumerate(root.iter("ScalarVariable"), 1)}
-    text = TAG.sub(lambda tag: f'<ScalarVariable name="{tag[1]}" valueReference="{index[tag[1]] - 1}"', text)
+    new = count(max((int(reference) + 1 for _, reference in TAG.findall(text) if reference), default=0))
+    text = TAG.sub(lambda tag: f'<ScalarVariable name="{tag[1]}" valueReference="{tag[2] or next(new)}"', text)
     text = re.sub(r' derivative="([^"]*)"', lambda found: f' derivative="{index[names(found[1])[0]]}"', text)
     known = dependencies_of(root, names) if depends is None else depends
     sections = structure(unknowns_of(root, names), index, known)

@@ -1,4 +1,4 @@
-"""How far a solution is from a table, from the contact, and from the laws of mechanics: 0 for the exact motion.
+"""How far a solution is from the contact and from the laws of mechanics: 0 for the exact motion.
 
 Momentum and angular momentum are written with the Euler angles and the non-spinning axes of the outputs: nothing in
 them is shared with the equations that are judged. Fixed axes unless said.
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from .integrate import solve
 from .model import Inputs, Road, Start, Wheel
 from .outputs import Solution
-from .tables import read_table
 
 Array = NDArray[np.float64]
 
@@ -47,13 +46,6 @@ def loads(wheel: Wheel, run: Solution, inputs: Inputs) -> tuple[Array, Array]:
     moment = np.cross(to_contact, ground) + run["tau"][:, None] * e3
     moment += M[:, :1] * e1 + M[:, 1:2] * e2 + M[:, 2:] * e3
     return ground + F + wheel.m * np.array(wheel.gravity), moment
-
-
-def table_error(table: str, wheel: Wheel, rtol: float = 1e-13) -> float:
-    """Largest error of a column of a trusted table, relative to the column's largest value."""
-    want = read_table(table)
-    got = solve(wheel, Start(), want["t"], rtol=rtol)
-    return max(np.abs(got[c] - want[c]).max() / np.abs(want[c]).max() for c in want if c != "t")
 
 
 def contact_gap(got: Solution) -> float:

@@ -252,8 +252,3 @@ class Contacts:
         if mode.contact == FREE:
             return float(y[SPEED]), float(y[CHI])
         return float(y[SPEED]) * cos(y[CHI]), float(y[SPEED]) * sin(y[CHI])
-
-
-def rolling(wheel: Wheel, omega_s: float = 0.0) -> Callable[[float, State], State]:
-    """dy/dt of a wheel that rolls without inputs: free, or under the regularized law of rolling friction."""
-    return Contacts(wheel, Road(), Inputs(), Options(omega_s=omega_s)).by_time(Mode(GRIPS, 0, 1))

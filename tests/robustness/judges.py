@@ -1,4 +1,4 @@
-"""A case at a tolerance: every judge's error, and whether what happened was expected.
+"""A case of the sweep at a tolerance: every judge's error, and what is not as expected.
 
 A judge compares a run with what must hold, and returns one error, 0 for the exact motion.
 
@@ -10,18 +10,13 @@ uniform      without weight: all rates stay as they are, over the largest
 fixed        omega_z is exactly zero wherever friction holds it, rad/s
 """
 
-from dataclasses import dataclass, field
-from typing import NamedTuple
-
 import numpy as np
+from robustness.sweep import Case
 
-from wheelfmu.fmu.driver import DISCARD, HEADLINE, WARNING, Values
+from wheelfmu.fmu.driver import DISCARD, HEADLINE, WARNING
 from wheelfmu.truth.closed_forms import linear_integrals
-from wheelfmu.truth.errors import range_error
 from wheelfmu.truth.motion import Library, Run, run
 from wheelfmu.truth.reference import Solution
-
-from .sweep import Case
 
 
 def energy(case: Case, run: Run, table: Solution | None) -> float:
@@ -95,57 +90,6 @@ def floor(name: str, case: Case) -> float:
     return WITH_FRICTION if name == "energy" and case.wheel.s > 0 else FLOORS.get(name, 0.0)
 
 
-# The regularized law -s N tanh(omega_z / omega_s) against the exact one, in the paper's scene with friction.
-FRICTION: Values = {"s": 0.03}
-TIMES = np.linspace(0.0, 10.0, 101)
-
-
-def law_bound(omega_s: float, tolerance: float) -> float:
-    """Error of the law allowed: per rad/s of its width, per tolerance."""
-    return 5.0 * omega_s + 100.0 * tolerance
-
-
-def error_against(truth: Run, found: Run) -> float:
-    """Of the headline outputs, relative to the range of each; nan where the run did not get to the end."""
-    if found.status > WARNING or len(found["t"]) != len(truth["t"]):
-        return float("nan")
-    return range_error(found, truth, HEADLINE)
-
-
-def law_error(library: Library, omega_s: float, tolerance: float, method: str) -> float:
-    """Of the paper's scene under the regularized law, against that under the exact one."""
-    regularized = FRICTION | {"friction_law": "regularized", "omega_s": omega_s, "method": method}
-    return error_against(run(library, FRICTION, TIMES, 1e-12), run(library, regularized, TIMES, tolerance))
-
-
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
-
-
-class Finding(NamedTuple):
-    """One judge's error; floor: what the judge itself cannot see."""
-
-    judge: str
-    error: float
-    allowed: float
-    floor: float
-
-
-@dataclass
-class Verdict:
-    """faults: sentences, empty where all is as expected."""
-
-    tolerance: float
-    outcome: str
-    errors: list[Finding] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
-    claimed: bool = True  # the tolerance is within those for which the case promises anything
-    steps: int = 0
-
-    @property
-    def holds(self) -> bool:
-        return not self.faults or not self.claimed
-
-
 def outcome_of(run: Run) -> str:
     if not run.columns:
         return "refused"
@@ -154,33 +98,27 @@ def outcome_of(run: Run) -> str:
     return "finishes" if run.status <= WARNING else ("discarded" if run.status == DISCARD else "fails")
 
 
-def judge(case: Case, tolerance: float, done: Run, table: Solution | None) -> Verdict:
-    outcome = outcome_of(done)
-    verdict = Verdict(tolerance, outcome, claimed=tolerance <= case.loosest)
+def judge(case: Case, tolerance: float, done: Run, table: Solution | None) -> list[str]:
+    """What is not as expected, a sentence each; nothing is expected of a tolerance beyond the case's loosest."""
+    outcome, faults = outcome_of(done), []
+    if tolerance > case.loosest:
+        return []
     if outcome != case.expect.kind:
-        verdict.faults.append(f"{outcome} instead of {case.expect}: {' '.join(done.messages[-1:])}")
+        faults.append(f"{outcome} instead of {case.expect}: {' '.join(done.messages[-1:])}")
     if not done.columns:
-        return verdict
-    verdict.steps = done.counters["n_steps"]
+        return faults
     if not all(np.isfinite(column).all() for name, column in done.columns.items() if name != "mu_required"):
-        verdict.faults.append("an output is not finite")
-        return verdict
+        return [*faults, "an output is not finite"]
+    found = [(name, JUDGES[name](case, done, table), bound, floor(name, case)) for name, bound in case.judges]
     if done.end is not None and case.expect.at is not None:
         error = abs(done.end - case.start_time - case.expect.at)
-        weigh(verdict, "instant", error, case.instant, case.instant_floor)
-    for name, bound in case.judges:
-        weigh(verdict, name, JUDGES[name](case, done, table), bound, floor(name, case))
-    return verdict
+        found.append(("instant", error, case.instant, case.instant_floor))
+    for name, error, bound, unseen in found:
+        if not error <= bound * tolerance + unseen:
+            faults.append(f"{name}: {error:.1e}, allowed {bound * tolerance + unseen:.1e}")
+    return faults
 
 
-def weigh(verdict: Verdict, name: str, error: float, bound: float, unseen: float) -> None:
-    """Allowed: bound times the tolerance, and what the judge cannot see."""
-    allowed = bound * verdict.tolerance + unseen
-    verdict.errors.append(Finding(name, error, allowed, unseen))
-    if not error <= allowed:
-        verdict.faults.append(f"{name}: {error:.1e}, allowed {allowed:.1e}")
-
-
-def judge_case(library: Library, case: Case, tolerances: tuple[float, ...] = TOLERANCES) -> list[Verdict]:
+def judge_case(library: Library, case: Case, tolerances: tuple[float, ...]) -> list[str]:
     table = reference_table(case) if "reference" in dict(case.judges) else None
-    return [judge(case, t, run(library, case.start, case.times, t), table) for t in tolerances]
+    return [fault for t in tolerances for fault in judge(case, t, run(library, case.start, case.times, t), table)]

@@ -10,15 +10,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.motion import start_values
-from wheelfmu.truth.reference import Start, Wheel
-from wheelfmu.truth.reference.frames import rotation
-from wheelfmu.truth.reference.modes import rolling
-from wheelfmu.truth.reference.motion import initial_state
+from wheelfmu.truth.reference import Start, Wheel, solve
 
 Array = NDArray[np.float64]
 KINDS = ("refused", "unfolded", "steady", "ended")
@@ -69,16 +65,6 @@ class Orbit:
         return self.library.probe_first_fall(self.probe)
 
 
-def reduced(row: Array) -> Array:
-    """The reduced state of one row of the reference: quaternion, w, O, v_O, psi, phi, works."""
-    n = rotation(*row[:4])[2]
-    s = np.hypot(n[0], n[1])
-    ux, uy = n[0] / s, n[1] / s
-    w = row[4:7]
-    omega_1, omega_2 = w[0] * uy - w[1] * ux, w[0] * ux + w[1] * uy
-    return np.array([np.arctan2(s, n[2]), omega_1, omega_2, w[2], row[13], row[14], row[7], row[8]])
-
-
 def headline_of(y: Array) -> Array:
     """X_O, theta, phi_dot and psi_dot of rows of the reduced state."""
     theta, _, omega_2, omega_3, _, _, X_O, _ = y.T
@@ -97,42 +83,38 @@ def energies(wheel: Wheel, y: Array) -> Array:
 
 
 def stepped(wheel: Wheel, start: Start, t: Array) -> Array:
-    """Every step of the way by the reference: Newton and Euler in body axes, DOP853."""
-    run = solve_ivp(rolling(wheel), (0, t[-1]), initial_state(wheel, start), "DOP853", t, rtol=1e-13, atol=1e-14)
-    return np.array([reduced(row) for row in run.y.T])
+    """Every step of the way by the reference: Newton and Euler in body axes. t: rising, the first is the start."""
+    run = solve(wheel, start, t.tolist())
+    rates = [run["theta_dot"], run["psi_dot"] * np.sin(run["theta"]), run["omega_z"]]
+    return np.column_stack([run["theta"], *rates, run["psi"], run["phi"], run["X_O"], run["Y_O"]])
 
 
 class Halves:
-    """The paper's wheel by the reference over half a nutation; the rest by laying half after half, one at a time."""
+    """The paper's wheel by the reference over half a nutation; the rest by laying half after half."""
 
     def __init__(self, wheel: Wheel, start: Start, mirrored: bool = True) -> None:
-        self.mirrored = mirrored
-        rate, y0 = rolling(wheel), initial_state(wheel, start)
-        run = solve_ivp(rate, (0, 0.7), y0, "DOP853", rtol=3e-14, atol=1e-15, max_step=0.01, dense_output=True)
-        self.at = lambda t: reduced(run.sol(t))
-        self.length = brentq(lambda t: self.at(t)[1], 0.5, 0.7, xtol=1e-16)
+        self.wheel, self.start, self.mirrored = wheel, start, mirrored
+        self.length = brentq(lambda t: stepped(wheel, start, np.array([0.0, t]))[-1, 1], 0.5, 0.7, xtol=1e-16)
+        self.first, self.last = stepped(wheel, start, np.array([0.0, self.length]))
 
     def read(self, t: Array) -> Array:
         """States at rising instants t; theta_dot is zero at the start."""
-        L, first, last = self.length, self.at(0.0), self.at(self.length)
-        psi, phi, place, k = first[4], first[5], complex(*first[6:]), 0
-        way = (complex(*last[6:]) - place) * np.exp(-1j * psi)
-        turn = last[4] - psi
-        rows = []
-        for instant in t:
-            while instant >= (k + 1) * L:
-                back = self.mirrored and k % 2
-                place += np.exp(1j * psi) * (np.conj(way) * np.exp(1j * turn) if back else way)
-                psi, phi, k = psi + turn, phi + last[5] - first[5], k + 1
-            rows.append(self._inside(instant - k * L, psi, phi, place, bool(self.mirrored and k % 2)))
-        return np.array(rows)
-
-    def _inside(self, u: float, psi: float, phi: float, place: complex, back: bool) -> Array:
-        """Where the wheel is u after a turning point at which it had psi, phi and place."""
-        y = self.at(self.length - u if back else u)
-        edge = self.at(self.length if back else 0.0)
-        way = (complex(*y[6:]) - complex(*edge[6:])) * np.exp(-1j * edge[4])
-        sign = -1 if back else 1
-        spot = place + np.exp(1j * psi) * (-np.conj(way) if back else way)
-        angles = psi + sign * (y[4] - edge[4]), phi + sign * (y[5] - edge[5])
-        return np.array([y[0], sign * y[1], y[2], y[3], *angles, spot.real, spot.imag])
+        L, first, last = self.length, self.first, self.last
+        halves = np.floor(t / L).astype(int)
+        back = (halves % 2 == 1) & self.mirrored
+        u = t - halves * L
+        inside, at = np.unique(np.where(back, L - u, u), return_inverse=True)
+        y = stepped(self.wheel, self.start, np.array([0.0, *inside]))[1:][at]
+        # A half as seen from its beginning: its way and its turns; backwards, mirrored, with the same turns.
+        way, turn = (complex(*(last - first)[6:])) * np.exp(-1j * first[4]), last[4] - first[4]
+        place, places = complex(*first[6:]), []
+        for k in range(halves[-1] + 1):
+            places.append(place)
+            step = np.conj(way) * np.exp(1j * turn) if k % 2 and self.mirrored else way
+            place += np.exp(1j * (first[4] + k * turn)) * step
+        sign, edge = np.where(back, -1, 1), np.where(back[:, np.newaxis], last, first)
+        moved = (y[:, 6] - edge[:, 6] + 1j * (y[:, 7] - edge[:, 7])) * np.exp(-1j * edge[:, 4])
+        psi, phi = first[4] + halves * turn, first[5] + halves * (last[5] - first[5])
+        spot = np.array(places)[halves] + np.exp(1j * psi) * np.where(back, -np.conj(moved), moved)
+        angles = psi + sign * (y[:, 4] - edge[:, 4]), phi + sign * (y[:, 5] - edge[:, 5])
+        return np.column_stack([y[:, 0], sign * y[:, 1], y[:, 2:4], *angles, spot.real, spot.imag])

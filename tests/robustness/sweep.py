@@ -33,7 +33,7 @@ class Expectation:
 class Case(Started):
     """One wheel. start: changes of the FMU's start values; judges: names of judges.py with the bound of each, in
     multiples of the tolerance; instant: the same for the instant of the ending, s; loosest: the largest tolerance at
-    which the expectation is claimed."""
+    which the expectation holds."""
 
     group: str
     name: str
@@ -46,7 +46,6 @@ class Case(Started):
     instant: float = 10.0
     instant_floor: float = 1e-9
     loosest: float = 1e-4
-    remark: str = ""
     inputs = Schedule()
 
     def __str__(self) -> str:
@@ -110,10 +109,9 @@ def inertia(wheel: Wheel) -> dict[str, float]:
 
 
 def falls() -> Iterator[Case]:
-    remark = "1.7e-5 rad from the unstable equilibrium: errors grow 1e4-fold"
-    for degrees, instant, why in ((89.999, 2e3, remark), *((degrees, 10.0, "") for degrees in (75.0, 45.0, 10.0, 1.0))):
-        how = {"instant": instant, "remark": why}
-        yield Case("fall from rest", f"{degrees:g} deg", resting(degrees), 5.0, fall(degrees), FREE, **how)
+    # The first is 1.7e-5 rad from the unstable equilibrium: errors grow 1e4-fold.
+    for degrees, instant in ((89.999, 2e3), (75.0, 10.0), (45.0, 10.0), (10.0, 10.0), (1.0, 10.0)):
+        yield Case("fall from rest", f"{degrees:g} deg", resting(degrees), 5.0, fall(degrees), FREE, instant=instant)
 
 
 def uprights() -> Iterator[Case]:
@@ -135,16 +133,15 @@ def spins() -> Iterator[Case]:
     yield Case("spin", "1e-9 rad/s", spinning(1e-9), 2.0, flat, FREE)
     yield Case("spin", "1e-6 rad/s: clears the ground by 1e-7 m", spinning(1e-6), 1.0)
     yield from (Case("spin", f"{spin:g} rad/s", spinning(spin), 1.0) for spin in (1e-3, 1.0, 1e2, 1e3))
-    remark = "N ~ omega_z omega_2: an error of 1e-3 rad/s in omega_2 lifts the wheel"
-    yield Case("spin", "10000 rad/s", spinning(1e4), 1.0, remark=remark, loosest=1e-6)
+    # N ~ omega_z omega_2: an error of 1e-3 rad/s in omega_2 lifts the wheel.
+    yield Case("spin", "10000 rad/s", spinning(1e4), 1.0, loosest=1e-6)
 
 
 def tilts() -> Iterator[Case]:
-    remark = "one error per bounce, some fifty bounces"
-    for degrees in (1.0, 0.1, 0.01):
+    for degrees in (1.0, 0.1, 0.01):  # one error per bounce, some fifty bounces
         start = brushing(degrees)
         name = f"theta = {degrees:g} deg, psi_dot = {start['psi_dot_start']:.0f} rad/s"
-        yield Case("brushing the ground", name, start, judges=free(200.0), samples=2000, remark=remark)
+        yield Case("brushing the ground", name, start, judges=free(200.0), samples=2000)
     for degrees, bound in ((91.0, 10.0), (100.0, 10.0), (135.0, 20.0), (170.0, 200.0)):
         yield Case("past upright", f"theta = {degrees:g} deg", tilted(degrees), judges=free(bound))
 
@@ -219,14 +216,14 @@ def lift_offs() -> Iterator[Case]:
         expected = Expectation("lifts", ended.time) if ended else Expectation()
         yield Case("lift-off", name, rolling, 2.0, expected, CHECKED)
     pulled = {**inertia(sphere(0.1)), "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
-    name, remark = "contact kept with friction, s = 0.03 m", "a ground that pulls has no rolling friction"
-    yield Case("lift-off", name, pulled, 0.9, judges=CHECKED, remark=remark)
+    # A ground that pulls has no rolling friction.
+    yield Case("lift-off", "contact kept with friction, s = 0.03 m", pulled, 0.9, judges=CHECKED)
     for name, force in (("just leaves", -1e-6), ("just stays", 1e-6)):
         wheel = grazing(force)
         ending = Expectation("lifts", fall_lift_off(wheel, THETA_0)) if force < 0 else fall(75.0, wheel)
         touching = Case("lift-off", f"{name}: least N = {force:g} m g", {**inertia(wheel), **rest}, 2.0, ending, FREE)
-        remark = "N touches zero: an error e in N moves the instant by sqrt(e)"
-        yield replace(touching, instant_floor=1e-6, loosest=1e-6, remark=remark)
+        # N touches zero: an error e in N moves the instant by sqrt(e).
+        yield replace(touching, instant_floor=1e-6, loosest=1e-6)
 
 
 @cache
