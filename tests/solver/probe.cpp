@@ -58,7 +58,7 @@ void rates(const Setting& s, double t, const double* y, double* d) {
 
 int states_of(const Setting& s) { return s.kind >= settling ? 4 : s.kind == harmonic ? 2 : 1; }
 
-void slopes_of_turning(void*, double, const double*, std::span<const double> values, double* slopes) {
+void slopes_of_turning(void*, double, const double*, std::span<const double> values, double* slopes, double*) {
   std::fill_n(slopes, values.size(), -stiffness);
 }
 
@@ -103,9 +103,9 @@ solver::Problem problem_of(Probe* probe) {
   p.near = 0.1;
   p.extremes = s.extreme_count ? extremes_inside : nullptr, p.longest_step = s.longest_step;
   if (s.kind == steep)
-    p.steep = {1, slopes_of_steep};
+    p.steep = {1, solver::Settling::none, slopes_of_steep};
   else if (s.kind >= settling)
-    p.settling = {1, 0, slopes_of_turning};
+    p.turning = {1, 0, slopes_of_turning};
   return p;
 }
 
