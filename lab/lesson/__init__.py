@@ -1,1 +1,1 @@
-"""The 3D page of recorded motions and the live page."""
+"""The 3D page of recorded motions, and the lesson."""

@@ -22,12 +22,12 @@ def main(*words: str) -> None:
 
 def live(wasm: Path, output: Path, *, overwrite: bool = False) -> None:
     check([output], [wasm], options.is_page, overwrite=overwrite)
-    written(output, document.write(output, "The wheel, live", [], wasm=wasm))
+    written(output, document.write(output, "The rolling wheel, a lesson", [], wasm=wasm))
 
 
 def recorded(given: argparse.Namespace) -> None:
     parameters = {name: getattr(given, name) for name in options.GIVEN if getattr(given, name) is not None}
-    bodies = [body for path in given.files for body in read_bodies(path, parameters, given.box)]
+    bodies = [body for path in given.files for body in read_bodies(path, parameters)]
     bodies, every = document.thinned(named(bodies, given.labels))
     if every > 1:
         print(f"One row in {every} is kept, so that the page stays below {document.PAGE_LIMIT / 1e6:g} MB.")
@@ -41,8 +41,8 @@ def written(output: Path, size: int) -> None:
 def named(bodies: list[Body], labels: list[str]) -> list[Body]:
     """Bodies with distinct names, the second `wheel` as `wheel 2`; called by label, place on a car, or name."""
     if len(labels) > len(bodies):
-        count = f"{len(bodies)} {'body' if len(bodies) == 1 else 'bodies'}"
-        raise Fault(f"--labels names {len(labels)} bodies, but the files hold {count}.")
+        count = f"{len(bodies)} {'wheel' if len(bodies) == 1 else 'wheels'}"
+        raise Fault(f"--labels names {len(labels)} wheels, but the files hold {count}.")
     seen: Counter[str] = Counter()
     found = []
     for body, label in zip_longest(bodies, labels):

@@ -1,7 +1,7 @@
-"""Bodies in motion out of result files: wheels, and a car's body, from the CSV that `fmpy simulate` writes.
+"""Wheels in motion out of result files, from the CSV that `fmpy simulate` writes.
 
-SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the body `name`;
-columns without such a prefix are one wheel, called as the file.
+SI units, fixed axes X, Y, Z, Z up, angles in rad and not wrapped. A column `name.X_O` belongs to the wheel `name`;
+columns without such a prefix are one wheel, called as the file. All other columns stay unread.
 """
 
 from collections import defaultdict
@@ -18,26 +18,22 @@ from wheelfmu.fmu.values import Fault
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")
 SHOWN = ("Z_O", "omega_z", "friction_mode", "n_events", "lambda_1", "lambda_2", "lambda_3", "E")
-SLIDING = ("slip_x", "slip_y")
-GUIDED = ("M_guide_1", "M_guide_2")
+MORE = ("slip_x", "slip_y", "v_x", "v_y", "lambda_x", "lambda_y", "M_guide_1", "M_guide_2")
 RATES = tuple(f"{name}_dot" for name in (*POSE, "Z_O"))
 PARAMETERS = tuple(variables("parameter"))
-BODY_POSE = ("X", "Y", "Z", "yaw", "pitch", "roll")
-ALIASES = {"psi": "yaw", "theta": "pitch", "phi": "roll"}  # of a car's body
 PAPER_WHEEL = (0.3, 0.05)  # r_0, r in m, (27)
 
 
 @dataclass(frozen=True)
 class Body:
-    """A wheel (size None) or a box (size: length, width, height in m), one row per communication point.
+    """A wheel, one row per communication point.
 
-    parameters: a wheel's values that do not change, among them r_0 and r, as far as they are known.
+    parameters: its values that do not change, among them r_0 and r, as far as they are known.
     """
 
     name: str
     columns: dict[str, Array]
     parameters: dict[str, float] = field(default_factory=dict)
-    size: tuple[float, float, float] | None = None
     label: str = ""
 
 
@@ -50,8 +46,8 @@ def numbers(table: Table, name: str) -> Array:
     return values
 
 
-def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | None = None) -> list[Body]:
-    """All bodies of one file. given: parameters in the place of the file's; box: size of a car's body in m."""
+def read_bodies(path: Path, given: dict[str, float] | None = None) -> list[Body]:
+    """All wheels of one file. given: parameters in the place of the file's."""
     table = read_table(path)
     if "time" not in table.columns:
         raise Fault(f"{path} has no column time; a file as `fmpy simulate --output-file` writes it is needed.")
@@ -65,22 +61,17 @@ def read_bodies(path: Path, given: dict[str, float] | None = None, box: tuple | 
     for name in filter("time".__ne__, table.columns):
         prefix, _, short = name.rpartition(".")
         groups[prefix][short] = name
-    bodies = []
+    found = []
     for prefix, group in groups.items():
-        rolls = group.keys() >= set(POSE)
-        if not rolls:
-            group = {ALIASES.get(short, short): column for short, column in group.items()}
-        wanted = (*POSE, *SHOWN, *SLIDING, *GUIDED, *RATES, *PARAMETERS) if rolls else BODY_POSE
-        if rolls or group.keys() >= {"X", "Y", "Z"}:
+        if group.keys() >= set(POSE):
+            wanted = (*POSE, *SHOWN, *MORE, *RATES, *PARAMETERS)
             columns = {short: numbers(table, group[short])[kept] for short in wanted if short in group}
-            body = Body(prefix or path.stem, {"time": time[kept]} | columns)
-            bodies.append(make_wheel(body, given or {}) if rolls else body)
+            found.append(make_wheel(Body(prefix or path.stem, {"time": time[kept]} | columns), given or {}))
         elif not prefix and len(groups) == 1:
             raise Fault(f"{path} lacks the column {', '.join(short for short in POSE if short not in group)}.")
-    if not bodies:
-        raise Fault(f"{path} holds no body: a wheel needs the columns {', '.join(POSE)}, a car's body X, Y, Z.")
-    wheels = [body for body in bodies if body.parameters]
-    return [body if body.parameters else make_box(body, wheels, box) for body in bodies]
+    if not found:
+        raise Fault(f"{path} holds no wheel, which needs the columns {', '.join(POSE)}.")
+    return found
 
 
 def make_wheel(wheel: Body, given: dict[str, float]) -> Body:
@@ -91,19 +82,6 @@ def make_wheel(wheel: Body, given: dict[str, float]) -> Body:
     if not {"r_0", "r"} <= values.keys():
         values |= dict(zip(("r_0", "r"), shape_of(columns), strict=True))
     return replace(wheel, columns=columns, parameters=values)
-
-
-def make_box(body: Body, wheels: list[Body], box: tuple[float, float, float] | None) -> Body:
-    """A car's body; without a given size as long and wide as the wheels' centres stand apart at the start."""
-    columns = dict.fromkeys(BODY_POSE, np.zeros_like(body.columns["time"])) | body.columns  # missing angles: 0
-    size = box or (1.0, 0.6, 0.4)
-    if wheels and not box:
-        yaw = columns["yaw"][0]
-        apart = np.array([[wheel.columns[name][0] for name in ("X_O", "Y_O")] for wheel in wheels])
-        along, across = apart @ [np.cos(yaw), np.sin(yaw)], apart @ [-np.sin(yaw), np.cos(yaw)]
-        least = 2 * max(wheel.parameters["r_0"] + wheel.parameters["r"] for wheel in wheels)
-        size = max(float(np.ptp(along)), least), max(0.8 * float(np.ptp(across)), 0.5 * least), 0.7 * least
-    return replace(body, columns=columns, size=size)
 
 
 def shape_of(columns: dict[str, Array]) -> tuple[float, float]:

@@ -13,13 +13,14 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader
 
 from lab.lesson.bodies import Body
-from wheelfmu.diagrams.start_values import PAPER_S, ROOT, preset, scale, thrown, wheels
+from wheelfmu.diagrams.start_values import ROOT, moments, wheels
 from wheelfmu.diagrams.start_values import bodies as ready_bodies
 from wheelfmu.diagrams.start_values import variables as described
 from wheelfmu.fmu.outputs import fresh
 from wheelfmu.fmu.values import POINTS
 
 WEB = Path(__file__).parent / "web"
+PARTS = ("m", "r_0", "r", "J_x", "J_y", "J_z")  # of a body
 PAGE_LIMIT = 10_000_000  # bytes of a page: forty rows a period of the fastest preset
 RECORDED_LIMIT = 8_500_000  # bytes of them for recorded motions
 THREE = "nicegui/elements/scene/dist/index.js"  # three.js and its OrbitControls, minified, within PyPI's nicegui
@@ -64,8 +65,7 @@ def thinned(bodies: list[Body], limit: int = RECORDED_LIMIT) -> tuple[list[Body]
 
 def encoded(body: Body) -> dict:
     columns = {name: base64_of(column.astype("<f8").tobytes()) for name, column in body.columns.items()}
-    kind = {"size": body.size} if body.size else {"parameters": body.parameters}
-    return {"name": body.name, "label": body.label, "columns": columns} | kind
+    return {"name": body.name, "label": body.label, "columns": columns, "parameters": body.parameters}
 
 
 def colours() -> dict[str, dict[str, str]]:
@@ -74,24 +74,24 @@ def colours() -> dict[str, dict[str, str]]:
     return found["palette"] | {name: found["palette"][tone] for name, tone in found["quantities"].items()}
 
 
-def moving_wheels() -> dict[str, dict]:
-    """The presets, each with the plan of a run: that of its case, or the paper's motion in proportion to its size."""
-    found = {}
-    for name, wheel in wheels().items():
-        body, case = preset(name), thrown(name)
-        stop = {"stop": case.pop("stop_time")} if case else {}
-        scaled = {"phi_dot_start": body["phi_dot_start"], "s": PAPER_S * scale(body, m=1)}
-        start = {n: float(f"{value:.3g}") for n, value in scaled.items()} | {"X_O_start": body["X_O_start"]}
-        plan = {"values": wheel["parameters"] | (case or start)} | stop
-        found[name] = wheel | {"plan": plan, "thrown": bool(case)}
-    return found
+def chooser() -> dict[str, dict]:
+    """The bodies of free play: the paper's wheel, a coin, a disc of the same mass and size, a hoop."""
+    paper = {name: v.preset for name, v in described("parameter").items() if name in PARTS}
+    sizes = {name: paper[name] for name in ("m", "r_0", "r")}
+    disc = {"title": ready_bodies()["disc"]["title"], "parameters": sizes | moments("disc", **sizes)}
+    coin, hoop = (wheels()[name] for name in ("coin", "backspin"))
+    found = {"tyre": {"title": "The paper's wheel", "parameters": paper}, "coin": coin, "disc": disc, "hoop": hoop}
+    gravity = described("parameter")["g"].preset
+    return {
+        name: {"title": one["title"].split(",")[0], "parameters": one["parameters"] | {"g": gravity}}
+        for name, one in found.items()
+    }
 
 
 def wheel_itself(wasm: Path) -> dict:
-    """What the live page holds: the wheel as a WebAssembly module, presets and bodies."""
+    """The wheel as a WebAssembly module, and the bodies to choose from."""
     (guid,) = re.findall(r'guid="(.*?)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"))
-    made = {"wheels": moving_wheels(), "bodies": ready_bodies(), "POINTS": POINTS}
-    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid} | made
+    return {"wasm": base64_of(wasm.read_bytes()), "guid": guid, "bodies": chooser(), "POINTS": POINTS}
 
 
 def write(output: Path, title: str, bodies: list[Body], sources: int = 1, wasm: Path | None = None) -> int:

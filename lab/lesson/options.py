@@ -6,7 +6,7 @@ from pathlib import Path
 
 from wheelfmu.fmu import outputs
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, Parser, limited, number, variables
+from wheelfmu.fmu.values import Fault, Parser, variables
 
 GIVEN = ("r_0", "r", "slope", "slope_direction")
 MARK = b'<meta name="generator" content="wheel.fmu">'  # of every page
@@ -17,11 +17,6 @@ def is_page(path: Path) -> bool:
     return MARK in path.read_bytes()
 
 
-def length(text: str) -> float:
-    """An edge of a box."""
-    return limited("box", number("box", text, "m"), "m", 0.0, above=True)
-
-
 def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     """The options; what cannot be meant ends the program with a sentence."""
     of = variables((ROOT / "modelDescription.xml").read_bytes(), "parameter")
@@ -30,12 +25,11 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     add("files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it")
     add("--output", "-o", type=Path, help="the page (default: the first file's name with .html)")
     add("--title", default="The wheel in motion", help="of the page (default: %(default)s)")
-    add("--labels", nargs="+", default=[], help="names of the bodies on the page, in order")
+    add("--labels", nargs="+", default=[], help="names of the wheels on the page, in order")
     add("--r_0", type=of["r_0"].number_of, help="ring radius in m (default: from Z_O and theta)")
     add("--r", type=of["r"].number_of, help="tube radius in m (default: from Z_O and theta)")
     add("--slope", type=of["slope"].number_of, help="slope of the road: 8deg, 12%% (default: the file's, else level)")
     add("--slope_direction", type=of["slope_direction"].number_of, help="direction in which the road rises, from X")
-    add("--box", nargs=3, type=length, metavar=("L", "W", "H"), help="size of a car's body in m")
     add("--overwrite", action="store_true", help="replace the page even if this command did not write it")
     given = parser.parse_args(words)
     if missing := [str(path) for path in given.files if not path.is_file()]:

@@ -76,7 +76,7 @@ MORE = {root_doc: (HERE / "contents.txt").read_text(encoding="utf-8"), "docs/c_h
 
 
 def read(app: Sphinx, name: str, source: list[str]) -> None:
-    """The README gets the chapters of the site, the page of the C header the header; a step opens the live page."""
+    """The README gets the chapters of the site, the page of the C header the header; a step opens the lesson."""
     source[0] += MORE.get(name, "")
     if app.config.html_context.get("live"):
         source[0] = re.sub(r"`(#step=\d+)`", rf'<a href="{"../" * name.count("/")}live.html\1">\1</a>', source[0])

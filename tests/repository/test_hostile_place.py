@@ -85,9 +85,9 @@ def test_an_example_is_built_and_run(place: Path) -> None:
     assert "CMAKE_BUILD_TYPE:STRING=Release\n" in (place / "build" / "examples" / "CMakeCache.txt").read_text()
 
 
-def test_the_live_page_is_compiled(place: Path) -> None:
+def test_the_lesson_is_compiled(place: Path) -> None:
     door(place, "page")
-    assert (place / "results" / "wheel_live.html").stat().st_size > 1e6
+    assert (place / "results" / "wheel_lesson.html").stat().st_size > 1e6
 
 
 def test_the_quick_tests_pass_and_a_direct_one_tests_the_sources_as_they_are(place: Path) -> None:

@@ -1,6 +1,6 @@
-"""Writes the live page, on which the wheel runs in a browser. One offline file contains wheel.fmu's sources compiled to
-WebAssembly with the releases' compiler; its trajectories are bit-identical to the released FMU's
-(lab/lesson/README.md)."""
+"""Writes the lesson, in which the wheel runs in a browser. One offline file, which opens by a double click, contains
+wheel.fmu's sources compiled to WebAssembly with the releases' compiler; its trajectories are bit-identical to the
+released FMU's (lab/lesson/README.md)."""
 
 from argparse import Namespace
 from pathlib import Path
@@ -12,9 +12,9 @@ OPTIONS = {
     "file": {
         "nargs": "?",
         "type": Path,
-        "default": ROOT / "results" / "wheel_live.html",
+        "default": ROOT / "results" / "wheel_lesson.html",
         "metavar": "FILE",
-        "help": "if not given, results/wheel_live.html",
+        "help": "if not given, results/wheel_lesson.html",
     },
     "--overwrite": {"action": "store_true", "help": "replaces FILE even if this command did not write it"},
 }

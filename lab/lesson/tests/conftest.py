@@ -39,7 +39,7 @@ def recorded_file(scenes, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def live_file() -> Path:
-    page = ROOT / "build" / "wheel_live.html"
+    page = ROOT / "build" / "wheel_lesson.html"
     page.parent.mkdir(exist_ok=True)
     with page.with_name("wasm.lock").open("w") as file:  # one process at a time builds the module
         fcntl.flock(file, fcntl.LOCK_EX)

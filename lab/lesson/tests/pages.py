@@ -1,5 +1,6 @@
 """Result files, pages, and a browser that looks at them."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,10 +27,9 @@ for (const call of ["clear", "drawElements", "drawArrays", "texSubImage2D", "gen
 const frame = window.requestAnimationFrame;
 window.requestAnimationFrame = (act) => setTimeout(() => frame(act), 40);"""
 # The first view of a page, at its start.
-REST = """if (page.live?.kept) page.live.keep(false);
-page.choose(0);
+REST = """page.choose(0);
 page.player.set({playing: false, t: 0, speed: 1});
-page.plots.portrait.choose('phase');
+if (!page.lesson) page.plots.choose('phase');
 for (const [name, on] of [['follow', true], ['axes', false], ['force', false]]) page.switches.flip(name, on);
 page.stage.controls.reset()"""
 # A vector in the road's axes as the scene shows it.
@@ -71,9 +71,9 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     return path
 
 
-def view(*arguments: object) -> int:
-    """What ./scripts/view does, once all is set up; its exit status."""
-    return main(*map(str, arguments))
+def view(*arguments: object) -> None:
+    """What ./scripts/view does, once all is set up."""
+    main(*map(str, arguments))
 
 
 def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
@@ -82,28 +82,45 @@ def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:
 
 def seek(page: Page, t: float) -> None:
     """A page at the instant t."""
-    page.evaluate("(t) => { page.player.seek(t); page.live?.frame(); page.draw(); }", t)
+    page.evaluate("(t) => { page.player.seek(t); page.lesson?.frame(); page.draw(); }", t)
 
 
-def start(page: Page, at: float = 0.0, **values: float) -> None:
-    """The live page with the paper's wheel, but for these start values, and its clock standing at `at`."""
-    page.evaluate("(values) => { page.player.pause(); page.live.load({values}); }", values)
+def start(page: Page, at: float = 0.0, **chosen: float | str) -> None:
+    """Free play with these values and its clock standing at `at`."""
+    open_step(page, 11, chosen)
     seek(page, at)
 
 
-def change(page: Page, **values: float) -> None:
-    """Other start values, as by the sliders."""
+def open_step(page: Page, step: int, chosen: dict | None = None, *, asks: bool = False) -> str:
+    """A step 1, 2 ... at rest, with what it asks answered; returns its text."""
+    page.evaluate("([step, chosen]) => page.lesson.open(step - 1, chosen)", [step, chosen or {}])
+    page.evaluate("(asks) => { page.player.pause(); asks || page.lesson.forget(); page.lesson.frame(); }", asks)
+    return page.locator("#story .text").inner_text()
+
+
+def change(page: Page, **chosen: float | str) -> None:
+    """Other values, as by the controls."""
     page.evaluate(
-        "(all) => { for (const one of all) page.live.setStart(...one); page.live.frame(); }", [*values.items()]
+        "(all) => { for (const one of all) page.lesson.set(...one); page.lesson.frame(); }", [*chosen.items()]
     )
 
 
 def do(page: Page, at: float, **values: float) -> None:
-    """These values act in the live page from the instant `at` on."""
-    act = "([t, all]) => { page.player.seek(t); for (const one of all) page.live.setNow(...one); page.live.compute(); }"
+    """These inputs act from the instant `at` on."""
+    act = """([t, all]) => {
+      page.player.seek(t);
+      for (const one of all) page.lesson.setNow(...one);
+      page.lesson.change('kept');
+      page.lesson.frame();
+    }"""
     page.evaluate(act, [at, [*values.items()]])
 
 
-def value(page: Page, name: str) -> float:
-    """A start value of the live page."""
-    return page.evaluate("(name) => page.live.value(name)", name)
+def parameters(page: Page, wheel: int = 0) -> dict[str, float]:
+    """Those of a wheel that is shown."""
+    return page.evaluate("(i) => page.wheels[i].parameters", wheel)
+
+
+def numbers(text: str) -> list[float]:
+    """All numbers of a text."""
+    return [float(number.replace("−", "-")) for number in re.findall(r"[-−]?\d+(?:\.\d+)?", text)]

@@ -7,11 +7,9 @@ from support.typed import check_refused, check_taken
 
 REFUSED = {
     "view motion.csv --r_0 0,3 --r 0,05": "the decimal mark is a point",
-    "view motion.csv --box 1,5 1 1": "the decimal mark is a point",
     "view motion.csv --slope steep": "is not a number",
     "view motion.csv --slope 95deg": "must be",
     "view motion.csv --r_0 -1 --r 0": "must be",
-    "view motion.csv --box 0 1 1": "must be",
     "view motion.csv --title a --title b": "given twice, as ",
     "view motion.csv --output motion.csv": "is read",
     "view motion.csv -o ./motion.csv": "is read",

@@ -1,22 +1,17 @@
-// Bodies in the scene, in the road's axes. A wheel: a torus of ring radius r_0 and tube radius r in m, turned by psi
-// about Z, theta about the line of nodes e1, and phi about the axle e3 (paper, (3)), with its contact path, carrier
-// axes and the ground's force. A car's body: a box with its centre at X, Y, Z in m, turned by yaw, pitch, roll in rad
-// (in this order about z, y, x; x forward, y to the left, z up).
+// A wheel in the scene, in the road's axes: a torus of ring radius r_0 and tube radius r in m, turned by psi about Z,
+// theta about the line of nodes e1, and phi about the axle e3 (paper, (3)), with its contact path, carrier axes and the
+// arrows of pictures.js.
 import {colour, fill} from '#dom';
-import {balance} from '#mechanics';
-import {bendTurn, dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, makeTurn, pointArrow, showRibbon} from '#shapes';
-import {before, contactOf, extent, slipOf} from '#table';
+import {arrowsOf} from '#pictures';
+import {dispose, makeArrow, makeLabel, makeRibbon, makeSolid, makeTexture, pointArrow, showRibbon} from '#shapes';
+import {before, contactOf} from '#table';
 import {THREE} from 'three';
 
 const metal = (color, specular, shininess) => ({color, specular, shininess});
 const [METAL, FACE] = [metal('#9aa2ac', '#6a7078', 40), metal('#8d949f', '#8a9098', 60)];
 const GOLD = metal('#c2a04e', '#8d7a45', 60);
-const FORCE = ['lambda_1', 'lambda_2', 'lambda_3'];  // of the ground, fixed axes
-const UPRIGHT = [Math.PI / 2, 0, 0];                 // a cylinder's axis along z
-// Arrows of the moments about e1, and their radii in those of the wheel.
-const ABOUT_E1 = Object.entries({weight: 0.5, side: 0.7, gyro: 0.9, sum: 1.12});
-const COIN = 0.05;  // m, up to which a disc is a coin
-const BEND = 4;     // rad, of a moment m g r_0
+const UPRIGHT = [Math.PI / 2, 0, 0];  // a cylinder's axis along z
+const COIN = 0.05;                    // m, up to which a disc is a coin
 const {BoxGeometry, CylinderGeometry, TorusGeometry} = THREE;
 
 /** The tyre's skin: tread on the outside, a stripe on each side wall, and the mark at phi = 0. x: along the ring. */
@@ -118,33 +113,32 @@ export class WheelModel {
           `e_${i + 1}`, along, 0.022 * r_0, 0.3 * r_0, colour(`--e${i + 1}`), 1 + 0.12 / (length * radius)));
     }
     this.carrier = new THREE.Group().add(this.body, this.axes, ...(look.held ? makeFork(look) : []));
-    this.force = makeArrow(0.03 * r_0, colour('--force'));
-    [this.slip, this.weight, this.side, this.guide] =
-        ['--slide', '--weight', '--side', '--guide'].map((name) => makeArrow(0.03 * r_0, colour(name), true));
-    this.guideName = makeLabel('M_guide', colour('--guide'), 0.3 * r_0);
-    this.turns = ABOUT_E1.map(([name, part]) => [name, makeTurn(part * radius, 0.06 * radius, colour(`--${name}`))]);
-    this.moments = new THREE.Group().add(...this.turns.map(([, turn]) => turn));
-    const [e1, e2, e3] = [0, 1, 2].map((i) => new THREE.Vector3().setComponent(i, 1));
-    this.moments.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(e2, e3, e1));
-    this.carrier.add(this.moments, this.guide, this.guideName);
+    this.arrows = new Map();
+    this.ring = this.makeGhost();
+    this.carrier.add(this.ring);
     const skin = {color: colour('--force'), transparent: true, side: THREE.DoubleSide, depthWrite: false};
     this.spot = new THREE.Mesh(new THREE.RingGeometry(0.07 * r_0, 0.11 * r_0, 40), new THREE.MeshBasicMaterial(skin));
     this.spot.renderOrder = 900;
     this.spot.position.z = 0.004 * size;
-    this.slip.position.z = 0.03 * r_0;
     const uphill =
         makeNamed('uphill', new THREE.Vector3(0.8 * radius, 0, 0), 0.03 * radius, 0.24 * radius, colour('--line'), 0.5);
     uphill.forEach((part, i) => part.position.add(new THREE.Vector3(1.2 * radius, 0, [0.03, 0.24][i] * radius)));
     this.uphill = new THREE.Group().add(...uphill);
-    this.contact = new THREE.Group().add(this.spot, this.uphill, this.force, this.slip, this.weight, this.side);
+    this.track = new THREE.Group();  // forward, left, up at the contact
+    this.contact = new THREE.Group().add(this.spot, this.uphill, this.track);
     this.group.add(this.carrier, this.contact, this.path);
     this.drawPath();
   }
 
-  /**
-   * The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks in other colours; the way
-   * uphill; and the scales of force and slip.
-   */
+  /** A ring that shows how the wheel will have turned. */
+  makeGhost() {
+    const look = {color: colour('--momentum'), transparent: true, opacity: 0.35, depthWrite: false};
+    return new THREE.Mesh(
+        new TorusGeometry(this.r_0, 0.25 * Math.max(this.r, 0.08 * this.r_0), 12, 90),
+        new THREE.MeshBasicMaterial(look));
+  }
+
+  /** The contact path anew: all of it faintly, up to now strongly, stick phases and skid marks; the way uphill. */
   drawPath() {
     const {wheel: {trace: {points}, table, phases, colour: accent, parameters}, size, r_0} = this;
     this.uphill.visible = parameters.slope > 0;
@@ -160,28 +154,18 @@ export class WheelModel {
     const marks = (spans, name, width) => spans.map((span) => ribbon(span, colour(name), width, 2, 0.9));
     this.past =
         [ribbon(all, accent, 1, 3, 0.95), ...marks(phases.slides, '--slide', 4), ...marks(phases.sticks, '--stick', 5)];
-    const N = (table.shown.lambda_3 ?? [1]).filter(Number.isFinite);
-    this.load = N.reduce((sum, value) => sum + value, 0) / N.length || 1;  // N, in the mean
-    const {M_guide_1 = [0], M_guide_2 = [0]} = table.shown;
-    const most = Math.max(...M_guide_1.map((moment, i) => Math.hypot(moment, M_guide_2[i])));
-    this.held = most > 1e-9 ? most : Infinity;                               // N m
-    this.fastest = extent(table.time.map((t) => slipOf(table, t)))[1] || 1;  // m/s
     dispose(this.path);
-    this.whole = ribbon(all, accent, 0.5, 1, 0.3);
+    this.whole = ribbon(all, accent, 0.35, 1, 0.75);
     this.path.clear().add(this.whole, ...this.past);
   }
 
   /** The last point of the path at or before t. */
   point(t) { return Math.max(0, before(this.wheel.trace.times, t + 1e-9)); }
 
-  /** Pose, path, slip, force and balance about e1 at t. show: {path, axes, force, balance, future}. */
+  /** Pose, path and arrows at t. show: {path, axes, future, pictures: [name], units: of unitsOf}. */
   update(t, show) {
     const {wheel: {table}, r_0, r} = this;
     const at = (name) => table.value(name, t);
-    const vector = (names, on, scale) => {
-      const known = on && names.every((name) => table.has(name));
-      return new THREE.Vector3(...(known ? names.map(at) : [])).multiplyScalar(scale);
-    };
     const [X, Y, psi, theta, phi] = ['X_O', 'Y_O', 'psi', 'theta', 'phi'].map(at);
     this.carrier.position.set(X, Y, table.has('Z_O') ? at('Z_O') : r_0 * Math.sin(theta) + r);
     this.carrier.rotation.set(theta, 0, psi, 'ZYX');
@@ -194,51 +178,35 @@ export class WheelModel {
       showRibbon(ribbon, this.point(t) - ribbon.userData.first);
     }
     this.contact.position.set(...contactOf(r_0, X, Y, psi, theta), 0);
-    const long = 1.1 * (r_0 + r);
-    const slip = vector(['slip_x', 'slip_y'], true, long / this.fastest);
-    pointArrow(this.slip, slip.applyAxisAngle(THREE.Object3D.DEFAULT_UP, psi));
-    pointArrow(this.force, vector(FORCE, show.force, long / this.load));
-    const moment = vector(['M_guide_1', 'M_guide_2'], show.force, 1.5 * (r_0 + r) / this.held);
-    pointArrow(this.guide, moment);
-    this.guideName.position.copy(moment).multiplyScalar(1.15);
-    this.guideName.visible = this.guide.visible;
-    this.showBalance(show.balance, long / this.load, at);
+    this.track.rotation.z = psi;
+    for (const {group} of this.arrows.values()) group.visible = false;
+    this.ring.visible = false;
+    for (const arrow of arrowsOf(this.wheel, show.pictures, t)) this.showArrow(arrow, show.units);
   }
 
-  /** The moments about e1 as arrows about it, and at the contact the forces that two of them come from. */
-  showBalance(shown, scale, at) {
-    for (const part of [this.moments, this.weight, this.side]) part.visible = shown;
-    if (!shown) return;
-    const {m, g, r_0, r} = this.wheel.parameters;
-    const moments = balance(this.wheel.parameters, at);
-    for (const [name, turn] of this.turns) bendTurn(turn, BEND * moments[name] / (m * g * r_0));
-    const [psi, across] = [at('psi'), moments.side / (r_0 * Math.sin(at('theta')) + r)];
-    pointArrow(this.weight, new THREE.Vector3(0, 0, scale * at('lambda_3')));
-    pointArrow(this.side, new THREE.Vector3(-across * Math.sin(psi), across * Math.cos(psi), 0).multiplyScalar(scale));
-  }
-}
-
-export class ChassisModel {
-  /** chassis: {name, size: [length, width, height] in m, table}. */
-  constructor(chassis) {
-    const {name, size: [length, width, height], table} = chassis;
-    Object.assign(this, {wheel: chassis, table, group: new THREE.Group()});
-    const shape = new BoxGeometry(length, width, height);
-    const solid = makeSolid(shape, {color: colour('--body'), transparent: true, opacity: 0.45});
-    const edges =
-        new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({color: colour('--line')}));
-    const place = [0.5 * length + 0.1 * width, 0, 0];
-    const cone = new THREE.ConeGeometry(0.12 * width, 0.2 * width, 4);
-    const nose = makeSolid(cone, {color: colour('--line')}, place, [0, 0, -Math.PI / 2]);
-    this.box = new THREE.Group().add(solid, edges, nose);
-    this.box.name = `body:${name}`;
-    this.group.add(this.box);
+  /** An arrow of pictures.js with its name at its tip; its length is in units of its kind, a length its own. */
+  showArrow({name, kind, place, vector, from = [0, 0, 0], after = [0, 0, 0], color, faint = false}, units) {
+    const scale = kind === 'length' ? 1 : (this.r_0 + this.r) / (units[kind]?.number ?? Infinity);
+    const [length, tail] = [vector, after].map((parts) => new THREE.Vector3(...parts).multiplyScalar(scale));
+    const {group, arrow, label} = this.arrows.get(name) ?? this.makeNamedArrow(name, place, color, faint);
+    group.visible = true;
+    group.position.set(...from).add(tail);
+    pointArrow(arrow, length);
+    label.visible = arrow.visible && !faint;
+    label.position.copy(length).addScaledVector(length.clone().normalize(), 0.06 * this.r_0 + label.userData.half);
+    if (!faint) return;
+    this.ring.visible = arrow.visible;
+    this.ring.quaternion.setFromUnitVectors(
+        new THREE.Vector3(0, 0, Math.sign(vector[2]) || 1), length.clone().normalize());
   }
 
-  update(t) {
-    const [X, Y, Z, roll, pitch, yaw] =
-        ['X', 'Y', 'Z', 'roll', 'pitch', 'yaw'].map((name) => this.table.value(name, t));
-    this.box.position.set(X, Y, Z);
-    this.box.rotation.set(roll, pitch, yaw, 'ZYX');
+  makeNamedArrow(name, place, color, faint) {
+    const arrow = makeArrow(0.028 * this.r_0, colour(color), true);
+    if (faint) arrow.traverse(({material}) => material && Object.assign(material, {opacity: 0.45}));
+    const label = makeLabel(name, colour(color), 0.3 * this.r_0);
+    const group = new THREE.Group().add(arrow, label);
+    (place === 'centre' ? this.carrier : this.track).add(group);
+    this.arrows.set(name, {group, arrow, label});
+    return this.arrows.get(name);
   }
 }

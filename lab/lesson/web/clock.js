@@ -35,12 +35,13 @@ export class Player extends EventTarget {
   }
 }
 
-/** Shows the stick phases and slides behind the slider. */
+/** Shows slides in the upper half of the track behind the slider, stick phases in the lower. */
 export function showBands(wheels, {start, end}) {
   const part = (t) => (100 * t) / (end - start || 1);
   const band = (className) => ([from, to]) =>
       make('i', {className, style: `left:${part(from - start)}%; width:max(1px, ${part(to - from)}%)`});
-  const bands = wheels.flatMap(({phases: {slides, sticks}}) => [...slides.map(band('slide')), ...sticks.map(band(''))]);
+  const bands =
+      wheels.flatMap(({phases: {slides, sticks}}) => [...slides.map(band('slide')), ...sticks.map(band('stick'))]);
   $('#bands').replaceChildren(...bands);
 }
 
@@ -64,19 +65,22 @@ export function setUpTransport(player) {
 }
 
 /** What the scene shows, from the boxes of page.html: {show: {name: on}, flip(name, on)}. */
-export function setUpSwitches(stage) {
+export function setUpSwitches(stage, changed) {
   const boxes = [...document.querySelectorAll('#toggles input')];
   const show = Object.fromEntries(boxes.map(({name, checked}) => [name, checked]));
   const flip = (name, on = !show[name]) => {
     boxes.find((box) => box.name === name).checked = show[name] = on;
     stage.dirty = true;
   };
-  $('#toggles').onchange = ({target: {name, checked}}) => flip(name, checked);
+  $('#toggles').onchange = ({target: {name, checked}}) => {
+    flip(name, checked);
+    changed();  // other arrows may have another scale
+  };
   return {show, flip};
 }
 
-const PRESSED = 'button, select, summary, input[type=checkbox]';  // by the space bar
-const MOVED = 'input, select, summary, textarea, canvas';         // by arrow keys; of the canvas, the scene turns
+const PRESSED = 'button, select, input[type=checkbox], input[type=radio]';  // by the space bar
+const MOVED = 'input, select, canvas';  // by arrow keys; of the canvas, the scene turns
 
 /** The page's keys: those here, and for the rest the button that has the key as its shortcut. Fields keep their own. */
 export function setUpKeys({player, stage, plots}) {
@@ -89,7 +93,7 @@ export function setUpKeys({player, stage, plots}) {
     '+': () => player.shift(1),
     '-': () => player.shift(-1),
     'r': () => stage.controls.reset(),
-    'd': () => plots.portrait.next(),
+    'd': () => plots.next(),
   };
   addEventListener('keydown', (event) => {
     const key = event.key === ' ' ? 'space' : event.key.toLowerCase();

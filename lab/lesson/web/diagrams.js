@@ -1,22 +1,21 @@
-// All diagrams: the curves over time, and beside them one portrait, chosen by its buttons: the phase portrait, the
-// angular velocity along e2 and e3, or the path of the contact point from above. They share the clock,
-// and keep their axes while the reader pushes the wheel. The future is drawn faintly. Angles in degrees, all else SI.
-import {CURVES, PORTRAITS} from '#curves';
+// All diagrams. Over time: the past is a thick line, the future a thin one, and held or sliding is marked on the axis.
+// They share the clock, and keep their axes while the reader pushes the wheel. Angles in degrees, all else SI.
+import {fits, KINDS, PLANES} from '#curves';
 import {clearCanvas, colour, fixed, make, makeChoice, subscripted, write} from '#dom';
-import {before, extent} from '#table';
+import {contact} from '#pictures';
+import {before, extent, roundUp} from '#table';
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [48, 8, 10, 20];  // margins, CSS pixels
-const BAR = 4;                                       // CSS pixels, where held or sliding
+const LANE = 4;                                      // CSS pixels, of held or sliding
 const DASHES = [5, 4];
-const KEYS = 40;  // strokes of an arrow key draw a guess from start to end
-const DRAW = 'Draw how the tilt goes on: by mouse or finger, or by the arrow keys, of which the left one takes back';
+const [PAST, FUTURE] = [2.6, 1];  // CSS pixels, widths of lines
+const KEYS = 40;                  // strokes of an arrow key draw a guess from start to end
+const DRAW = 'Draw how the lean goes on: by mouse or finger, or by the arrow keys, of which the left one takes back';
 const FONT = '11px system-ui, sans-serif';
 
 /** Round numbers, at most about `count` of them, that span low to high. */
 function ticksOf([low, high], count) {
-  const raw = (high - low) / Math.max(1, count);
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5].find((factor) => factor * power >= raw) ?? 10);
+  const step = roundUp((high - low) / Math.max(1, count));
   const first = Math.ceil(low / step - 1e-9);
   const ticks = Array.from({length: Math.floor(high / step + 1e-9) - first + 1}, (_, i) => (first + i) * step);
   return {ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
@@ -30,145 +29,38 @@ function bounds(low, high) {
   return [low - pad, high + pad];
 }
 
-/**
- * Bounds that hold low to high and change as seldom as possible: those before, where they are wide enough, else widened
- * by a quarter of their span beyond what is asked for.
- */
+/** Bounds that hold low to high: those before, where they are wide enough, else widened by a quarter of their span. */
 function widened([before, after], low, high) {
   const reserve = 0.25 * (Math.max(high, after) - Math.min(low, before));
   return [low < before ? low - reserve : before, high > after ? high + reserve : after];
 }
 
+/** A figure with its caption and a canvas. */
 class Diagram {
-  /** kinds: what can be shown, of CURVES or PORTRAITS, by name. */
-  constructor(host, player, kinds) {
-    Object.assign(this, {player, kinds, name: Object.keys(kinds)[0], wheels: []});
-    this.layers = {faint: make('canvas'), strong: make('canvas')};
-    this.unit = make('span', {className: 'unit'});
-    this.values = make('output');
-    this.canvas = make('canvas', {role: 'img'});
-    this.choice = make('span', {className: 'segments', role: 'radiogroup', ariaLabel: 'Diagram'});
-    this.sketch = null;  // the reader's guess [[t, value], ...] in the units of the axes; `asks`: it can be drawn now
-    const title = this.timed ? make('b', {}, make('i', {}, ...subscripted(this.kind.symbol))) : this.choice;
-    const caption = make('figcaption', {}, title, this.unit, this.values);
-    this.figure = make('figure', {className: this.timed ? 'plot' : 'plot portrait'}, caption, this.canvas);
+  constructor(host, player, kind) {
+    Object.assign(this, {player, kind, wheels: []});
+    this.values = make('span', {className: 'values'});
+    this.canvas = make('canvas', {role: 'img', ariaLabel: kind.what, title: kind.what});
+    this.name = make('span', {className: 'name'}, ...subscripted(kind.title));
+    const unit = make('span', {className: 'unit'}, kind.unit);
+    this.figure = make(
+        'figure', {className: `plot ${kind.form}`}, make('figcaption', {}, this.name, unit, this.values), this.canvas);
     host.append(this.figure);
-    if (!this.timed) return;
-    this.canvas.onpointermove = ({buttons, offsetX, offsetY}) => {
-      if (buttons) this.asks ? this.sketchTo(offsetX, offsetY) : player.seek(this.timeAt(offsetX));
-    };
-    this.canvas.onpointerdown = (event) => {
-      this.canvas.setPointerCapture(event.pointerId);
-      this.last = null;
-      this.canvas.onpointermove(event);
-    };
-    this.canvas.onkeydown = ({key}) => !(this.asks && this.sketchBy(key));
   }
 
-  get kind() { return this.kinds[this.name]; }
-
-  /** Whether the horizontal axis is that of time. */
-  get timed() { return this.kind.units[0] === 's'; }
-
-  /** The name that a picture needs. */
-  get title() {
-    return this.timed || this.kind.even ? `${this.kind.symbol} [${this.kind.units[1]}]` : this.kind.symbol;
-  }
-
-  /**
-   * Takes the wheels to show, and the kind of this name, or the first that their columns allow; without any it hides.
-   */
-  select(wheels, name = this.name) {
-    const showing = (kind) =>
-        (kind.fits?.(wheels) === false ? [] :
-                                         wheels.filter(({table}) => kind.columns.every((column) => table.has(column))));
-    this.possible = Object.keys(this.kinds).filter((other) => showing(this.kinds[other]).length);
-    this.figure.hidden = !this.possible.length;
-    this.name = this.possible.includes(name) ? name : this.possible[0] ?? this.name;
-    Object.assign(this, {all: wheels, wheels: showing(this.kind)});
-    const [across, up] = this.kind.units;
-    this.unit.textContent = this.timed || across === up ? up : '';
-    this.canvas.title = this.canvas.ariaLabel = this.kind.what;
-    if (this.timed) return;
-    const buttons = this.possible.map((other) => ({name: other, title: this.kinds[other].what}));
-    makeChoice(this.choice, buttons, (other) => this.choose(other))(this.name);
-    [...this.choice.children].forEach(
-        (button, i) => button.append(...subscripted(this.kinds[this.possible[i]].symbol)));
-  }
-
-  choose(name) {
-    this.select(this.all, name);
-    this.prepare('fitted');
-    this.draw(this.player.t);
-  }
-
-  /** The next kind that there is. */
-  next() { this.choose(this.possible[(this.possible.indexOf(this.name) + 1) % this.possible.length]); }
-
-  /** A wheel's point at t. */
-  at(wheel, t) {
-    const now = Math.min(t, wheel.table.end);
-    return this.kind.point(this.kind.columns.map((name) => wheel.table.value(name, now)), wheel);
-  }
-
-  /** All points of a wheel with their instants {times, points}: its rows, or its path, which is denser. */
-  line(wheel) {
-    if (this.kind.even) return wheel.trace;
-    const columns = this.kind.columns.map((name) => wheel.table.shown[name]);
-    const point = (t, i) => this.kind.point(columns.map((column) => column[i]), wheel);
-    return {times: wheel.table.time, points: Array.from(wheel.table.time, point)};
-  }
-
-  /** Draws both layers anew. axis: 'fitted', 'kept' (only widened) or 'held' (widened only for what is past). */
-  prepare(axis) {
+  /** Takes the canvas's size and clears it; false while there is none. */
+  measure() {
     const {clientWidth: width, clientHeight: height} = this.canvas;
-    if (this.figure.hidden || !width) return;
-    this.lines = this.wheels.map((wheel) => this.line(wheel));
+    if (!width) return false;
     Object.assign(this, {width, height, pen: clearCanvas(this.canvas, width, height)});
-    Object.assign(this, {ink: colour('--ink'), paper: colour('--paper')});
     this.sizes = [width - LEFT - RIGHT, height - TOP - BOTTOM];
-    this.range(axis);
-    for (const [name, canvas] of Object.entries(this.layers)) {
-      const pen = clearCanvas(canvas, width, height);
-      const faint = name === 'faint';
-      if (faint) this.grid(pen);
-      pen.rect(LEFT, 0, this.sizes[0] + RIGHT, height - BOTTOM + 2);
-      pen.clip();
-      if (faint && this.secret) continue;
-      if (this.timed) this.bands(pen, faint ? 0.4 : 1);
-      pen.globalAlpha = faint ? 0.35 : 1;
-      if (faint || this.timed) this.lines.forEach(({points}, k) => this.stroke(pen, k, points.length - 1));
-    }
+    return true;
   }
 
-  range(axis) {
-    const {start, end, t} = this.player;
-    const seen = ({times, points}) => (axis === 'held' ? points.filter((_, i) => times[i] <= t) : points);
-    const points = this.lines.flatMap(seen);
-    const kept = axis !== 'fitted' && this.ranged === this.kind && this.ranges;
-    this.ranged = this.kind;
-    this.ranges = [0, 1].map((side) => {
-      if (this.timed && side === 0) return [start, end > start ? end : start + 1];
-      const sketch = side ? this.sketch ?? [] : [];
-      const [low, high] = extent([...points, ...sketch].flatMap((point) => (side ? point.slice(1) : point[0])));
-      if (side && this.asks) return [0, 100];  // deg
-      if (kept) return widened(kept[side], low, high);
-      const flat = Math.max(-low, high) < 1e-9 && !this.kind.even;  // zero throughout, but for rounding, has no scale
-      return flat ? [-1, 1] : bounds(low, high);
-    });
-    if (!this.kind.even) return;
-    const scale = Math.max(...this.ranges.map(([low, high], i) => (high - low) / this.sizes[i]));
-    this.ranges = this.ranges.map(([low, high], i) => {
-      const missing = scale * this.sizes[i] - (high - low);
-      const narrow = missing > 1e-9 * (high - low);  // rounding alone is no reason to move a limit
-      return narrow ? [low - missing / 2, high + missing / 2] : [low, high];
-    });
-  }
-
-  /** The numbers along the upper axis, [value, text]. */
-  get marks() {
-    const {ticks, digits} = ticksOf(this.ranges[1], Math.min(5, this.height / 26));
-    return ticks.map((tick) => [tick, fixed(tick, digits)]);
+  /** A wheel's column at t, while its motion lasts. */
+  at({table}, t) {
+    const now = Math.min(t, table.end);
+    return (name) => table.value(name, now);
   }
 
   /** How far along the axis across (0) or up (1) a value lies, in CSS pixels. */
@@ -180,15 +72,170 @@ class Diagram {
 
   y(value) { return TOP + this.sizes[1] - this.along(1, value); }
 
+  /** Lines and numbers of both axes; the last number across has the unit. Bars have no axis upward. */
+  grid(pen, unit) {
+    const up = this.kind.form === 'bars' ? {ticks: []} : ticksOf(this.ranges[1], Math.min(5, this.height / 26));
+    const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
+    pen.fillStyle = colour('--rule');
+    for (const tick of up.ticks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
+    for (const tick of this.kind.form === 'time' ? [] : across.ticks)
+      pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
+    Object.assign(pen, {font: FONT, fillStyle: colour('--soft'), textAlign: 'right', textBaseline: 'middle'});
+    for (const tick of up.ticks)
+      pen.fillText(fixed(tick, up.digits), LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
+    Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
+    for (const tick of across.ticks) {
+      const text = fixed(tick, across.digits) + (unit && tick === across.ticks.at(-1) ? ` ${unit}` : '');
+      pen.fillText(text, Math.min(this.x(tick), this.width - 14), this.height - 15);
+    }
+  }
+
+  line(pen, points, width, strokeStyle, dashes = []) {
+    Object.assign(pen, {lineWidth: width, lineJoin: 'round', strokeStyle}).setLineDash(dashes);
+    pen.beginPath();
+    for (const [x, y] of points) pen.lineTo(this.x(x), this.y(y));
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+
+  dot(pen, x, y, fillStyle) {
+    Object.assign(pen, {lineWidth: 1, fillStyle, strokeStyle: colour('--paper')}).beginPath();
+    pen.arc(this.x(x), this.y(y), 3.6, 0, 7);
+    pen.fill();
+    pen.stroke();
+  }
+}
+
+/** Curves over time. */
+class Curve extends Diagram {
+  constructor(host, player, kind) {
+    super(host, player, kind);
+    this.layers = [FUTURE, PAST].map((width) => ({width, canvas: make('canvas')}));
+    this.sketch = null;  // the reader's guess [[t, value], ...]; `asks`: it can be drawn now
+    const {canvas} = this;
+    canvas.onpointermove = ({buttons, offsetX, offsetY}) => {
+      if (buttons) this.asks ? this.sketchTo(offsetX, offsetY) : player.seek(this.timeAt(offsetX));
+    };
+    canvas.onpointerdown = (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.last = null;
+      canvas.onpointermove(event);
+    };
+    canvas.onkeydown = ({key}) => !(this.asks && this.sketchBy(key));
+  }
+
+  /** Whether the reader draws the curve now. */
+  ask(asks) {
+    const {canvas, wheels: [wheel], player} = this;
+    this.asks = asks;
+    if (asks) this.sketch = [[player.start, this.valuesAt(wheel, player.start)[0]]];
+    canvas.classList.toggle('asks', asks);
+    canvas.tabIndex = asks ? 0 : -1;
+    canvas.title = canvas.ariaLabel = asks ? DRAW : this.kind.what;
+  }
+
+  valuesAt(wheel, t) { return this.kind.values(this.kind.columns.map(this.at(wheel, t)), wheel); }
+
+  /** Draws past and future anew. axis: 'fitted', 'kept' (only widened) or 'held' (widened only for what is past). */
+  prepare(axis) {
+    if (!this.measure()) return;
+    const {kind, wheels} = this;
+    this.lines = wheels.map((wheel) => {
+      const columns = kind.columns.map((name) => wheel.table.shown[name]);
+      return Array.from(wheel.table.time, (t, i) => [t, ...kind.values(columns.map((column) => column[i]), wheel)]);
+    });
+    this.range(axis);
+    for (const {width, canvas} of this.layers) {
+      const pen = clearCanvas(canvas, this.width, this.height);
+      if (width === FUTURE) this.grid(pen, 's');
+      this.drawLevels(pen);
+      pen.rect(LEFT, 0, this.sizes[0] + RIGHT, this.height - BOTTOM + 2);
+      pen.clip();
+      if (width === FUTURE && this.secret) continue;
+      this.lines.forEach((points, k) => this.stroke(pen, k, points, width));
+      this.drawMarks(pen);
+    }
+  }
+
+  /** The bounds of both axes; while the future is a secret they tell nothing of it. */
+  range(axis) {
+    const {kind, player: {start, end, t}, lines} = this;
+    const seen = lines.flat().filter(([time]) => axis !== 'held' || time <= t);
+    const spread = ([, value, most]) => (kind.band ? [value, most, -most] : [value, most ?? value]);
+    const [low, high] = extent([...seen.flatMap(spread), ...(this.sketch ?? []).map(([, value]) => value)]);
+    const begun = Math.max(...lines.flatMap(([first]) => first.slice(1).map(Math.abs)));
+    const before = axis === 'fitted' ? null : this.ranges?.[1];
+    const flat = Math.max(-low, high) < 1e-9;  // zero throughout, but for rounding, has no scale
+    const open = before ? widened(before, low, high) : flat ? [-1, 1] : bounds(low, high);
+    this.ranges = [
+      [start, end > start ? end : start + 1],
+      this.secret ? kind.whole ?? bounds(-begun, begun) : open,
+    ];
+  }
+
+  /** The line of wheel k, with a cross where its motion ended; of a band, its limits. */
+  stroke(pen, k, points, width) {
+    const {wheels: {[k]: {colour: own, ended, phases, table}}, kind} = this;
+    const part = (i) => points.map((point) => [point[0], i < 0 ? -point[-i] : point[i]]);
+    if (kind.band) {
+      const held = colour('--stick');
+      Object.assign(pen, {fillStyle: held, globalAlpha: width === PAST ? 0.3 : 0.12}).beginPath();
+      for (const [t, value] of [...part(2), ...part(-2).reverse()]) pen.lineTo(this.x(t), this.y(value));
+      pen.fill();
+      pen.globalAlpha = 1;
+      for (const side of [2, -2]) this.line(pen, part(side), 1, held);
+      const sticks = width === PAST ? phases.sticks : [];
+      for (const [begin, end] of sticks) this.line(pen, part(1).filter(([t]) => t >= begin && t <= end), 7, held);
+    }
+    this.line(pen, part(1), width, own);
+    if (!kind.band && points[0].length > 2) this.line(pen, part(2), width, own, DASHES);
+    if (!ended) return;
+    const [x, y] = [this.x(table.end), this.y(points.at(-1)[1])];
+    Object.assign(pen, {lineWidth: 1.6, strokeStyle: own}).beginPath();
+    for (const side of [-4, 4]) {
+      pen.moveTo(x - 4, y - side);
+      pen.lineTo(x + 4, y + side);
+    }
+    pen.stroke();
+  }
+
+  /** A level of each wheel that has one, with both signs, where they are seen: dashed, its name above the line. */
+  drawLevels(pen) {
+    const values = this.wheels.map((wheel) => this.kind.level?.(wheel)).filter(Number.isFinite);
+    const seen = [...new Set(values)]
+                     .flatMap((value) => [-value, value])
+                     .filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1]);
+    for (const value of this.secret ? [] : seen) {
+      this.line(pen, [[this.ranges[0][0], value], [this.ranges[0][1], value]], 1, colour('--soft'), DASHES);
+      Object.assign(pen, {fillStyle: colour('--soft'), textAlign: 'left', textBaseline: 'bottom'});
+      write(pen, 'ω_crit', LEFT + this.sizes[0] - 30, this.y(value) - 4, 11);
+    }
+  }
+
+  /** Held and sliding in two lanes on the axis, so that neither hides the other; transitions as ticks at the top. */
+  drawMarks(pen) {
+    for (const {phases} of this.wheels) {
+      for (const [lane, name, spans] of [[1, '--stick', phases.sticks], [2, '--slide', phases.slides]]) {
+        pen.fillStyle = colour(name);
+        for (const [begin, end] of spans) {
+          const y = TOP + this.sizes[1] - lane * LANE;
+          pen.fillRect(this.x(begin), y, Math.max(1, this.x(end) - this.x(begin)), LANE);
+        }
+      }
+      pen.fillStyle = colour('--force');
+      for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
+    }
+  }
+
   /** The reader's guess goes on to a place of the canvas; what stood there before goes. */
   sketchTo(x, y) {
     const t = Math.min(this.player.end, Math.max(this.player.start, this.timeAt(x)));
     const [[low, high], [, length]] = [this.ranges[1], this.sizes];
     const value = low + Math.min(1, Math.max(0, 1 - (y - TOP) / length)) * (high - low);
-    const [from, to] = [Math.min(t, this.last ?? t), Math.max(t, this.last ?? t)];
+    const last = this.last ?? t;
+    const passed = (other) => other === t || (other - last) * (other - t) < 0;
     this.last = t;
-    this.sketch =
-        [...this.sketch.filter(([other]) => other < from || other > to), [t, value]].sort(([a], [b]) => a - b);
+    this.sketch = [...this.sketch.filter(([other]) => !passed(other)), [t, value]].sort(([a], [b]) => a - b);
     this.draw(this.player.t);
   }
 
@@ -197,7 +244,7 @@ class Diagram {
     const rise = {ArrowUp: 10, ArrowDown: -10, ArrowRight: 0}[key];
     const [t, value] = this.sketch.at(-1);
     if (key === 'ArrowLeft' && this.sketch.length > 1) this.sketch.pop();
-    if (rise !== undefined) this.sketch.push([t + this.player.end / KEYS, Math.min(100, Math.max(0, value + rise))]);
+    if (rise !== undefined) this.sketch.push([t + this.player.end / KEYS, Math.min(90, Math.max(0, value + rise))]);
     this.draw(this.player.t);
     return key.startsWith('Arrow');
   }
@@ -207,102 +254,20 @@ class Diagram {
     return start + ((x - LEFT) / this.sizes[0]) * (end - start);
   }
 
-  /** Lines and numbers of both axes; over time the last number has the unit, and there are no lines across. */
-  grid(pen) {
-    const across = ticksOf(this.ranges[0], Math.min(6, this.width / 48));
-    pen.fillStyle = colour('--rule');
-    for (const [tick] of this.marks) pen.fillRect(LEFT, Math.round(this.y(tick)), this.sizes[0], 1);
-    for (const tick of this.timed ? [] : across.ticks) pen.fillRect(Math.round(this.x(tick)), TOP, 1, this.sizes[1]);
-    Object.assign(pen, {font: FONT, fillStyle: colour('--soft'), textAlign: 'right', textBaseline: 'middle'});
-    for (const [tick, text] of this.marks) pen.fillText(text, LEFT - 6, Math.round(this.y(tick)) + 0.5, LEFT - 8);
-    Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
-    for (const tick of across.ticks) {
-      const unit = this.timed && tick === across.ticks.at(-1) ? ' s' : '';
-      pen.fillText(fixed(tick, across.digits) + unit, Math.min(this.x(tick), this.width - 14), this.height - 15);
-    }
-    this.drawLevels(pen);
-  }
-
-  /** A level of each wheel whose parameters are known, with both signs: dashed lines across, where they are seen. */
-  drawLevels(pen) {
-    const values = this.wheels.map(({parameters}) => this.kind.level?.(parameters)).filter(Number.isFinite);
-    const levels = [...new Set(values)].flatMap((value) => [-value, value]);
-    Object.assign(pen, {strokeStyle: colour('--soft'), lineWidth: 1, textAlign: 'left', textBaseline: 'bottom'});
-    pen.setLineDash(DASHES);
-    for (const value of levels.filter((level) => level > this.ranges[1][0] && level < this.ranges[1][1])) {
-      const y = Math.round(this.y(value)) + 0.5;
-      pen.beginPath();
-      pen.moveTo(LEFT, y);
-      pen.lineTo(LEFT + this.sizes[0], y);
-      pen.stroke();
-      write(pen, 'ω_crit', LEFT + this.sizes[0] - 26, y, 11);
-    }
-    pen.setLineDash([]);
-  }
-
-  /** Where the wheel is held, or slides: bars on the axis; transitions as ticks at the top. */
-  bands(pen, strength) {
-    pen.globalAlpha = strength;
-    for (const {phases} of this.wheels) {
-      for (const [name, spans] of [['--stick', phases.sticks], ['--slide', phases.slides]]) {
-        pen.fillStyle = colour(name);
-        for (const [begin, end] of spans)
-          pen.fillRect(this.x(begin), TOP + this.sizes[1] - BAR, Math.max(1, this.x(end) - this.x(begin)), BAR);
-      }
-      pen.fillStyle = colour('--force');
-      for (const t of phases.transitions) pen.fillRect(this.x(t) - 0.5, TOP - 7, 1, 7);
-    }
-  }
-
-  /** The line of wheel k up to its point `last`; over time with a cross where its motion ended. */
-  stroke(pen, k, last) {
-    const points = this.lines[k].points.slice(0, last + 1);
-    Object.assign(pen, {lineWidth: 1.6, lineJoin: 'round', strokeStyle: this.wheels[k].colour});
-    for (let part = 1; part < points[0]?.length; ++part) {
-      pen.setLineDash(part > 1 ? DASHES : []);
-      pen.beginPath();
-      for (const point of points) pen.lineTo(this.x(point[0]), this.y(point[part]));
-      pen.stroke();
-    }
-    pen.setLineDash([]);
-    if (!this.timed || !this.wheels[k].ended) return;
-    const [x, y] = [this.x(points.at(-1)[0]), this.y(points.at(-1)[1])];
-    pen.beginPath();
-    for (const side of [-4, 4]) {
-      pen.moveTo(x - 4, y - side);
-      pen.lineTo(x + 4, y + side);
-    }
-    pen.stroke();
-  }
-
-  drawSketch(pen) {
-    Object.assign(pen, {lineWidth: 2, strokeStyle: this.ink}).setLineDash(DASHES);
-    pen.beginPath();
-    for (const [t, value] of this.sketch) pen.lineTo(this.x(t), this.y(value));
-    pen.stroke();
-    pen.setLineDash([]);
-  }
-
-  /** The picture at t. */
   draw(t) {
-    if (this.figure.hidden || !this.width) return;
-    const {pen, width, height, layers: {faint, strong}} = this;
+    if (!this.width) return;
+    const {pen, width, height, layers: [future, past], kind, wheels} = this;
     pen.clearRect(0, 0, width, height);
-    pen.drawImage(faint, 0, 0, width, height);
-    const past = t < this.player.end ? this.x(t) / width : 1;
-    if (this.timed) pen.drawImage(strong, 0, 0, past * strong.width, strong.height, 0, 0, past * width, height);
-    if (!this.timed) this.lines.forEach(({times}, k) => this.stroke(pen, k, before(times, t)));
-    pen.fillStyle = this.ink;
-    if (this.timed) pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
-    const present = this.wheels.map((wheel) => this.at(wheel, t));
-    if (this.sketch) this.drawSketch(pen);
-    present.forEach(([x, ...all], k) => all.forEach((y) => {
-      Object.assign(pen, {lineWidth: 1, fillStyle: this.wheels[k].colour, strokeStyle: this.paper}).beginPath();
-      pen.arc(this.x(x), this.y(y), 3.6, 0, 7);
-      pen.fill();
-      pen.stroke();
-    }));
-    if (this.timed) this.show(present.flatMap(([, ...all], k) => all.map((value) => [value, this.wheels[k].colour])));
+    pen.drawImage(future.canvas, 0, 0, width, height);
+    const part = t < this.player.end ? this.x(t) / width : 1;
+    const {canvas} = past;
+    if (part > 0) pen.drawImage(canvas, 0, 0, part * canvas.width, canvas.height, 0, 0, part * width, height);
+    pen.fillStyle = colour('--ink');
+    pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
+    if (this.sketch) this.line(pen, this.sketch, 2, colour('--ink'), DASHES);
+    const present = wheels.map((wheel) => this.valuesAt(wheel, t).slice(0, kind.band ? 1 : 2));
+    present.forEach((all, k) => all.forEach((value) => this.dot(pen, t, value, wheels[k].colour)));
+    this.show(present.flatMap((all, k) => all.map((value) => [value, wheels[k].colour])));
   }
 
   /** The values [[number, colour], ...] in the caption. */
@@ -316,35 +281,231 @@ class Diagram {
   }
 }
 
+/** One quantity over another, or the path. */
+class Plane extends Diagram {
+  lineOf(wheel) {
+    if (this.kind.even) return wheel.trace;
+    const columns = this.kind.columns.map((name) => wheel.table.columns[name]);
+    const point = (_, i) => this.kind.point(columns.map((column) => column[i]), wheel);
+    return {times: wheel.table.time, points: Array.from(wheel.table.time, point)};
+  }
+
+  prepare(axis) {
+    if (!this.measure()) return;
+    this.lines = this.wheels.map((wheel) => this.lineOf(wheel));
+    const {t} = this.player;
+    const seen = ({times, points}) => (axis === 'held' ? points.filter((_, i) => times[i] <= t) : points);
+    const points = this.lines.flatMap(seen);
+    const before = axis === 'fitted' ? null : this.ranges;
+    this.ranges = [0, 1].map((side) => {
+      const [low, high] = extent(points.map((point) => point[side]));
+      return before ? widened(before[side], low, high) : bounds(low, high);
+    });
+    if (this.kind.even) this.level();
+  }
+
+  /** Widens one axis until both have one scale. */
+  level() {
+    const scale = Math.max(...this.ranges.map(([low, high], i) => (high - low) / this.sizes[i]));
+    this.ranges = this.ranges.map(([low, high], i) => {
+      const missing = scale * this.sizes[i] - (high - low);
+      const narrow = missing > 1e-9 * (high - low);  // rounding alone is no reason to move a limit
+      return narrow ? [low - missing / 2, high + missing / 2] : [low, high];
+    });
+  }
+
+  draw(t) {
+    if (!this.width) return;
+    const {pen, wheels, kind} = this;
+    pen.clearRect(0, 0, this.width, this.height);
+    this.grid(pen, kind.units[0]);
+    this.lines.forEach(({times, points}, k) => {
+      if (!this.secret) this.line(pen, points, FUTURE, wheels[k].colour);
+      this.line(pen, points.slice(0, before(times, t) + 1), PAST, wheels[k].colour);
+      this.dot(pen, ...kind.point(kind.columns.map(this.at(wheels[k], t)), wheels[k]), wheels[k].colour);
+    });
+  }
+}
+
+/** An arrow on a canvas from [x, y] by [dx, dy], with a name beyond its tip. */
+function arrow(pen, [x, y], [dx, dy], strokeStyle, name) {
+  const length = Math.hypot(dx, dy);
+  if (length < 1) return;
+  const [ux, uy] = [dx / length, dy / length];
+  const head = Math.min(9, length);
+  Object.assign(pen, {strokeStyle, fillStyle: strokeStyle, lineWidth: 2.6}).beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(x + dx - 0.8 * head * ux, y + dy - 0.8 * head * uy);
+  pen.stroke();
+  pen.beginPath();
+  pen.moveTo(x + dx, y + dy);
+  for (const side of [-0.5, 0.5]) pen.lineTo(x + dx - head * (ux - side * uy), y + dy - head * (uy + side * ux));
+  pen.fill();
+  Object.assign(pen, {textAlign: 'left', textBaseline: 'middle'});
+  write(pen, name, x + dx + 7 + 3 * ux, y + dy + 10 * uy, 12);
+}
+
+/** The friction circle: the road's force, forward up and left to the left, and the direction of the slip. */
+class Circle extends Diagram {
+  prepare() {
+    if (!this.measure()) return;
+    const {width, height, wheels: [{parameters: {mu_max, mu_slide}, table}]} = this;
+    this.outer = Math.max(mu_max, mu_slide);
+    const {lambda_x, lambda_y, lambda_3} = table.shown;
+    const force = extent(Array.from(lambda_x, (x, i) => Math.hypot(x, lambda_y[i])))[1];
+    const radius = this.outer > 0 ? this.outer * extent(lambda_3)[1] : roundUp(Math.max(force, 1e-9));
+    this.scale = (0.5 * height - 6) / radius;  // CSS pixels to a newton
+    this.middle = [width / 2 - 40, height / 2];
+  }
+
+  ring(radius, strokeStyle, name, place, dashes = []) {
+    const {pen, scale, middle: [x, y]} = this;
+    Object.assign(pen, {strokeStyle, lineWidth: 1.6}).setLineDash(dashes);
+    pen.beginPath();
+    pen.arc(x, y, scale * radius, 0, 7);
+    pen.stroke();
+    pen.setLineDash([]);
+    Object.assign(pen, {fillStyle: strokeStyle, textAlign: 'left', textBaseline: 'middle'});
+    write(pen, `${name} = ${fixed(radius, radius < 10 ? 2 : 0)} N`, this.width / 2 + this.height / 2 - 30, place, 12);
+  }
+
+  draw(t) {
+    if (!this.width) return;
+    const {pen, middle, scale, outer, wheels: [wheel], width, height} = this;
+    const at = this.at(wheel, t);
+    const {mu_max, mu_slide} = wheel.parameters;
+    const place = (along, left) => [middle[0] - scale * left, middle[1] - scale * along];
+    pen.clearRect(0, 0, width, height);
+    pen.fillStyle = colour('--rule');
+    pen.fillRect(middle[0] - height / 2, middle[1], height, 1);
+    pen.fillRect(middle[0], 0, 1, height);
+    if (outer > 0) {
+      this.ring(mu_max * at('lambda_3'), colour('--soft'), 'μ_max N', 18);
+      this.ring(mu_slide * at('lambda_3'), colour('--soft'), 'μ_slide N', height - 14, DASHES);
+    }
+    const {time} = wheel.table;
+    const {lambda_x, lambda_y} = wheel.table.shown;
+    Object.assign(pen, {strokeStyle: wheel.colour, lineWidth: 1}).beginPath();
+    for (let i = 0; i <= before(time, t); ++i) pen.lineTo(...place(lambda_x[i], lambda_y[i]));
+    pen.stroke();
+    const {slip} = contact(wheel.parameters, at);
+    const speed = Math.hypot(...slip);
+    const [tip, origin] = [place(at('lambda_x'), at('lambda_y')), place(0, 0)];
+    if (speed > 0) {
+      const way = place(...slip.map((part) => part / speed * 0.62 * (height / 2) / scale));
+      arrow(pen, origin, [way[0] - origin[0], way[1] - origin[1]], colour('--slide'), 'slip');
+    }
+    arrow(pen, origin, [tip[0] - origin[0], tip[1] - origin[1]], colour('--force'), 'road');
+    const force = Math.hypot(at('lambda_x'), at('lambda_y'));
+    this.values.textContent = `${fixed(force, force < 10 ? 2 : 0)}`;
+  }
+}
+
+const TERMS = [['tips', 'm g r_0', '--tips'], ['rights', '(J_z + m R²)(J_z/J_x) ω²', '--rights']];
+
+/** The two moments per radian of lean of each wheel, as bars of one scale. */
+class Bars extends Diagram {
+  prepare() { this.measure(); }
+
+  draw() {
+    if (!this.width) return;
+    const {pen, width, height, wheels} = this;
+    const most = Math.max(...wheels.flatMap(({perRadian: {tips, rights}}) => [tips, rights]));
+    const high = roundUp(1.02 * most);
+    this.ranges = [[0, high], [0, 1]];
+    pen.clearRect(0, 0, width, height);
+    this.grid(pen, '');
+    const rows = wheels.flatMap((wheel) => TERMS.map((term) => [wheel, ...term]));
+    const pitch = this.sizes[1] / rows.length;
+    rows.forEach(([{label, perRadian}, name, formula, own], i) => {
+      const y = TOP + i * pitch;
+      const text = rows.length > 2 ? `${label}: ${name}` : `${name}  ${formula}`;
+      pen.fillStyle = colour(own);
+      pen.fillRect(LEFT, y + 0.45 * pitch, this.along(0, perRadian[name]), 0.42 * pitch);
+      Object.assign(pen, {fillStyle: colour('--ink'), textAlign: 'left', textBaseline: 'middle'});
+      const end = write(pen, text, LEFT + 3, y + 0.24 * pitch, 12);
+      write(pen, `${this.number(perRadian[name])} N m`, end + 10, y + 0.24 * pitch, 12);
+    });
+    this.values.replaceChildren(
+        ...wheels.map(({perRadian: {tips, rights}}) => make('span', {}, this.verdict(tips, rights))));
+  }
+
+  number(value) { return Number(value.toPrecision(3)).toString(); }
+
+  verdict(tips, rights) {
+    if (Math.abs(rights / tips - 1) < 5e-3) return 'equal: the critical spin';
+    return rights > tips ? 'righted' : 'tipped';
+  }
+}
+
+const FORMS = {
+  time: Curve,
+  plane: Plane,
+  circle: Circle,
+  bars: Bars
+};
+
 export class Plots {
   constructor(host, player) {
-    Object.assign(this, {player, axis: 'fitted'});
-    this.curves = CURVES.map((kind) => new Diagram(host, player, {curve: kind}));
-    this.portrait = new Diagram(host, player, PORTRAITS);
-    this.all = [...this.curves, this.portrait];
+    Object.assign(this, {host, player, axis: 'fitted', all: [], portrait: 'path', wheels: []});
     new ResizeObserver(() => this.prepare()).observe(host);
   }
 
-  /**
-   * Whether the future is a secret, until the reader has guessed; draws: it can be drawn into the diagram of the tilt,
-   * whose axis then goes from flat to beyond upright.
-   */
-  keepSecret(secret, draws = false) {
-    for (const diagram of this.all) diagram.secret = secret;
-    const [tilt] = this.curves;
-    tilt.asks = secret && draws;
-    if (secret) tilt.sketch = draws ? [[this.player.start, tilt.at(tilt.wheels[0], this.player.start)[1]]] : null;
-    tilt.canvas.classList.toggle('asks', tilt.asks);
-    tilt.canvas.tabIndex = tilt.asks ? 0 : -1;
-    tilt.canvas.title = tilt.canvas.ariaLabel = tilt.asks ? DRAW : tilt.kind.what;
+  /** Shows wheels [{table, phases, trace, colour}] in diagrams by name; without names in those that they fit. */
+  show(wheels, names = this.fitting(wheels)) {
+    const key = names.join();
+    this.wheels = wheels;
+    if (key !== this.key) {
+      this.key = key;
+      this.host.replaceChildren();
+      this.all = names.map((name) => new FORMS[KINDS[name].form](this.host, this.player, KINDS[name]));
+      this.choosePlane(names);
+    }
+    for (const one of this.all)
+      one.wheels = wheels.filter((wheel) => one.kind.columns.every((name) => wheel.table.has(name)));
     this.prepare();
   }
 
-  /** wheels: [{table, phases, trace, colour}], those that are shown. */
-  show(wheels) {
-    for (const diagram of this.all) diagram.select(wheels);  // all of them first: they share the width
+  /** Diagrams of recorded wheels. */
+  fitting(wheels) {
+    const curves = ['lean', 'spin', 'speeds', 'load', 'carrier', 'energy'];
+    this.planes = Object.keys(PLANES).filter((name) => wheels.some((wheel) => fits(KINDS[name], wheel)));
+    if (!this.planes.includes(this.portrait)) this.portrait = this.planes[0];
+    return [...curves.filter((name) => wheels.some((wheel) => fits(KINDS[name], wheel))), this.portrait];
+  }
+
+  /** Of recorded wheels the last diagram can be chosen. */
+  choosePlane(names) {
+    if (!this.planes || this.planes.length < 2) return;
+    const host = make('span', {className: 'segments', role: 'radiogroup', ariaLabel: 'Diagram'});
+    const options = this.planes.map((name) => ({name, label: name, title: `${PLANES[name].what} (key D)`}));
+    makeChoice(host, options, (name) => this.choose(name))(names.at(-1));
+    this.all.at(-1).name.replaceChildren(host);
+  }
+
+  choose(name) {
+    this.portrait = name;
+    this.show(this.wheels);
+  }
+
+  /** The next plane of recorded wheels. */
+  next() {
+    const {planes = []} = this;
+    if (planes.length > 1) this.choose(planes[(planes.indexOf(this.portrait) + 1) % planes.length]);
+  }
+
+  /** Whether the future is a secret, until the reader has guessed; draws: into the diagram of the lean. */
+  keepSecret(secret, draws = false) {
+    for (const diagram of this.all) {
+      Object.assign(diagram, {secret, sketch: secret ? null : diagram.sketch});
+      diagram.figure.hidden = secret && (draws ? diagram !== this.tilt : diagram.kind.form === 'bars');
+    }
+    if (this.tilt) this.tilt.ask(secret && draws);
     this.prepare();
   }
+
+  /** The diagram into which a guess is drawn. */
+  get tilt() { return this.all.find(({kind}) => kind === KINDS.lean); }
 
   prepare() {
     for (const diagram of this.all) diagram.prepare(this.axis);

@@ -1,17 +1,14 @@
-// Elements of the page: found, made, and rows of buttons of which one is on; the colours of style.css; the data.
+// Elements of the page: found, made, and rows of radio buttons; the colours of style.css; the data.
 
 export const $ = (selector, host = document) => host.querySelector(selector);
 
 /**
  * What the page was made with: recorded bodies and how many files they come from, the variables of the description by
- * name, and of the live page the wheel itself.
+ * name, and of the lesson the wheel itself.
  */
 export const {bodies, sources, variables, live} = JSON.parse($('#data').textContent);
 
 export const DEGREES = 180 / Math.PI;  // to a radian
-
-/** An angle in rad as a slider gives it. */
-export const degrees = (angle) => angle / DEGREES;
 
 /** A new element with these properties and children. */
 export function make(tag, properties, ...children) {
@@ -22,11 +19,20 @@ export function make(tag, properties, ...children) {
 
 export const makeButton = (properties, onclick) => make('button', {type: 'button', onclick, ...properties});
 
-/** Fills a row with buttons, given by name and other properties; returns mark(name), which turns one on. */
+let groups = 0;
+
+/**
+ * Fills a row with radio buttons [{name, label, title, key}], which arrow keys move through; returns mark(name), which
+ * checks one.
+ */
 export function makeChoice(row, options, act) {
-  const buttons = options.map((option) => makeButton({role: 'radio', ...option}, () => act(option.name)));
-  row.replaceChildren(...buttons);
-  return onChange((chosen) => buttons.forEach((button, i) => (button.ariaChecked = options[i].name === chosen)));
+  const group = `group_${++groups}`;
+  const buttons = options.map(
+      ({name, key = null}) =>
+          make('input', {type: 'radio', name: group, value: name, ariaKeyShortcuts: key, onchange: () => act(name)}));
+  row.replaceChildren(...options.map(
+      ({label, title}, i) => make('label', {title}, buttons[i], make('span', {}, ...subscripted(label)))));
+  return (chosen) => buttons.forEach((button, i) => (button.checked = options[i].name === chosen));
 }
 
 const SUBSCRIPT = /_(crit|guide|max|slide|\w(?!\w))/;  // not that of a variable's name, theta_start
@@ -51,9 +57,9 @@ export function write(pen, text, x, y, size, font = '$ system-ui, sans-serif') {
 
 /** Shows a text in an element, or hides the element; writes only what is new. */
 export function say(host, text) {
+  if (host.said === (text ?? '')) return;
+  host.said = text ?? '';
   host.hidden = !text;
-  if (host.said === text) return;
-  host.said = text;
   host.replaceChildren(...subscripted(text ?? ''));
 }
 
@@ -71,9 +77,3 @@ export function clearCanvas(canvas, width, height) {
 
 /** The value of a colour variable of style.css, as text. */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-/** A function that acts upon a value, and again only once the value is another. */
-export function onChange(act) {
-  let before;
-  return (value) => value !== before && act(before = value);
-}

@@ -60,17 +60,29 @@ export class Fmu {
 
   set(name, value) { this.exchange('Set', [name], [value]); }
 
-  /**
-   * One run from time 0. plan: {values: {name: start value}, changes: [{t, name, value}, ...] by rising t, stop,
-   * record: [names], interval: s from row to row, a part of STEP}. Returns {table, ended: sentence or null}.
-   */
-  run({values, changes, stop, record, interval = STEP}) {
+  /** A new start at these values {name: value}. */
+  begin(values) {
     this.messages = [];
     this.call('Reset');
     for (const [name, value] of Object.entries(values)) this.set(name, value);
     this.call('SetupExperiment', 0, 0, 0, 0, 0);
     this.call('EnterInitializationMode');
     this.call('ExitInitializationMode');
+  }
+
+  /** The accelerations {theta_ddot, psi_ddot} at a start. */
+  accelerations(values) {
+    this.begin(values);
+    const [theta_ddot, psi_ddot] = this.exchange('Get', ['theta_ddot', 'psi_ddot']);
+    return {theta_ddot, psi_ddot};
+  }
+
+  /**
+   * One run from time 0. plan: {values: {name: start value}, changes: [{t, name, value}, ...] by rising t, stop,
+   * record: [names], interval: s from row to row, a part of STEP}. Returns {table, ended: sentence or null}.
+   */
+  run({values, changes, stop, record, interval = STEP}) {
+    this.begin(values);
     const groups = Object.values(Object.groupBy(record, (name) => variables[name].type));
     const rows = [];
     const note = (t) => rows.push([t, ...groups.flatMap((names) => [...this.exchange('Get', names)])]);

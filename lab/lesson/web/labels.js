@@ -1,5 +1,6 @@
 // The wheels' names over their views, with what each does at the present: rolls, is held, or why its motion has ended.
 import {make, subscripted} from '#dom';
+import {KINDS} from '#pictures';
 import {extent, slipOf} from '#table';
 
 const FLAT = 1e-4;    // rad from lying flat
@@ -30,13 +31,21 @@ export function layOutLabels(host, views) {
   host.replaceChildren(...views.map((wheels) => make('div', {className: 'view'}, ...wheels.map(({tag}) => tag))));
 }
 
-const MARKS = [['sticks', '--stick', 'held: ω_z = 0'], ['slides', '--slide', 'slides; the arrow is the slip']];
+const MARKS = [['sticks', '--stick', 'held: ω_z = 0'], ['slides', '--slide', 'slides']];
 
-/** What the colours of path, bars and names mean, of those that occur. */
-export function showLegend(host, wheels) {
+/** Below the scene: how long an arrow as long as the radius is, by kind, and the marks of path and time that occur. */
+export function showLegend(host, wheels, units) {
+  const arrows = Object.entries(units).map(([kind, {number, colours}]) => {
+    const names =
+        Object.entries(colours).map(([name, own]) => make('b', {style: `color:var(${own})`}, ...subscripted(name)));
+    return make('span', {}, ...names.flatMap((name, i) => [i ? ', ' : '', name]), ` ${number} ${KINDS[kind]}`);
+  });
+  const key = arrows.length ? [make('span', {}, 'An arrow as long as the radius:'), ...arrows] : [];
   const found = MARKS.filter(([name]) => wheels.some(({phases}) => phases[name].length));
-  host.replaceChildren(...found.map(
-      ([, name, text]) => make('span', {}, make('i', {style: `background:var(${name})`}), ...subscripted(text))));
+  host.replaceChildren(
+      ...key,
+      ...found.map(
+          ([, name, text]) => make('span', {}, make('i', {style: `background:var(${name})`}), ...subscripted(text))));
 }
 
 /** Writes beside each wheel's name how it moves at t. */

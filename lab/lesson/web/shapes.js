@@ -45,29 +45,7 @@ export function pointArrow(arrow, vector) {
   arrow.quaternion.setFromUnitVectors(THREE.Object3D.DEFAULT_UP, vector.clone().divideScalar(length));
 }
 
-const ARC = 120;  // parts of a full turn
 const SERIF = 'italic 600 $ Georgia, "Times New Roman", serif';
-
-/** A flat arrow about the axis z, from x towards y, of this radius and width in m; seen through what is before it. */
-export function makeTurn(radius, width, color) {
-  const material = new THREE.MeshBasicMaterial({color, side: THREE.DoubleSide, depthTest: false, transparent: true});
-  const band = new THREE.Mesh(new THREE.RingGeometry(radius - width / 2, radius + width / 2, ARC, 1), material);
-  const head = new THREE.Mesh(new THREE.CircleGeometry(1.3 * width, 3), material);
-  for (const part of [band, head]) part.renderOrder = 910;
-  return Object.assign(new THREE.Group().add(band, head), {userData: {band, head, radius, width}});
-}
-
-/** Bends an arrow of makeTurn by an angle in rad, below one turn; negative: the other way. */
-export function bendTurn(turn, angle) {
-  const {band, head, radius, width} = turn.userData;
-  const [size, way] = [Math.abs(angle), Math.sign(angle)];
-  const count = Math.max(0, Math.round((size - 1.3 * width / radius) / (2 * Math.PI) * ARC));  // up to the head
-  turn.visible = count > 0;
-  band.geometry.setDrawRange(way < 0 ? 6 * (ARC - count) : 0, 6 * count);
-  head.position.set(radius * Math.cos(angle), radius * Math.sin(angle), 0);
-  head.position.addScaledVector(new THREE.Vector3(Math.sin(angle), -Math.cos(angle), 0), way * 1.3 * width);
-  head.rotation.z = angle + way * Math.PI / 2;
-}
 
 /** A flat band on the ground along points [[x, y], ...], in layers one over the other. */
 export function makeRibbon(points, {width, height, layer, color, opacity}) {
@@ -92,18 +70,19 @@ export function makeRibbon(points, {width, height, layer, color, opacity}) {
 /** Shows a ribbon up to its row-th point. */
 export const showRibbon = (ribbon, row) => ribbon.geometry.setDrawRange(0, 6 * Math.max(0, row));
 
-/** A short text that always faces the reader, such as uphill or e_1 with its subscript; height in m. */
+/** A short text that always faces the reader, such as uphill or e_1 with its subscript; height, half its width in m. */
 export function makeLabel(text, colour, height) {
   const width = Math.max(128, 40 * text.length);
+  let length = 0;
   const map = makeTexture(width, 96, (pen) => {
     Object.assign(pen, {textBaseline: 'middle', fillStyle: colour});
-    const length = write(pen, text, 0, 48, 72, SERIF);
+    length = write(pen, text, 0, 48, 72, SERIF);
     pen.clearRect(0, 0, width, 96);
     write(pen, text, (width - length) / 2, 48, 72, SERIF);
   });
   const label = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, transparent: true}));
   label.scale.set((height * width) / 96, height, 1);
-  return Object.assign(label, {renderOrder: 5});
+  return Object.assign(label, {renderOrder: 5, userData: {half: height * length / 192}});
 }
 
 /** Frees what a group holds on the graphics card. */

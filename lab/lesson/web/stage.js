@@ -6,10 +6,12 @@ import {OrbitControls, THREE} from 'three';
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
 const GROUND = 60;  // squares along the edge of the drawn ground, at the least
 const LENS = 34;    // degrees, from top to bottom
-// Where the eye stands beside what it looks at, in sizes of the scene; `behind`, X is the heading.
+// Where the eye stands beside what it looks at, in sizes of the scene; but for `beside`, X is the heading.
 const EYES = {
   beside: [1.5, -2.35, 1.0],
-  behind: [-3.2, -0.7, 0.75]
+  behind: [-2.1, 1.7, 1.15],
+  abreast: [0.3, -2.2, 0.55],
+  above: [0.2, -2.3, 1.7]
 };
 const SUN = new THREE.Vector3(1.4, -1.1, 3.6);  // where it stands, in sizes of the scene
 
@@ -39,7 +41,7 @@ export class Stage {
     const keys = (act) => (event) =>
         act({code: event.code, shiftKey: true, preventDefault: () => event.preventDefault()});
     this.controls.listenToKeyEvents({addEventListener: (kind, act) => canvas.addEventListener(kind, keys(act))});
-    this.road = new THREE.Group();  // what is given in the road's axes: ground and bodies
+    this.road = new THREE.Group();  // what is given in the road's axes: ground and wheels
     const surface = new THREE.MeshPhongMaterial({color: '#fff', shininess: 0, specular: '#000'});
     this.ground = new THREE.Mesh(new THREE.PlaneGeometry(GROUND, GROUND), surface);
     this.ground.receiveShadow = true;
@@ -98,7 +100,7 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Replaces the bodies: [WheelModel or ChassisModel]. */
+  /** Replaces the wheels: [WheelModel]. */
   put(models) {
     for (const {group} of this.models) dispose(group.removeFromParent());
     for (const {group} of models) this.road.add(group);

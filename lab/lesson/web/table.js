@@ -11,6 +11,12 @@ export function extent(values) {
   return values.reduce(both, [Infinity, -Infinity]);
 }
 
+/** The next number at or above a positive one that is 1, 2 or 5 times a power of ten. */
+export function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return Number((power * [1, 2, 5, 10].find((digit) => digit * power >= value * (1 - 1e-9))).toPrecision(6));
+}
+
 /** The index of the last of rising instants at or before t, or -1. */
 export function before(times, t) {
   let [low, high] = [-1, times.length];
@@ -57,7 +63,7 @@ export class Table {
   row(t) { return Math.max(0, Math.min(before(this.time, t), this.rows - 2)); }
 
   /**
-   * A column at t: the cubic through both rows' values and rates where the column `<name>_dot` is there, else a line.
+   * A column at t: of the pose the cubic through both rows' values and rates, if those are known; else a line.
    */
   value(name, t) {
     const values = this.shown[name];
@@ -65,17 +71,11 @@ export class Table {
     const h = this.time[i + 1] - this.time[i];
     const x = h > 0 ? Math.min(1, Math.max(0, (t - this.time[i]) / h)) : 1;
     const [a, b] = [values[i], values[i + 1]];
-    const rates = this.columns[`${name}_dot`];
+    const rates = POSE.includes(name) && this.columns[`${name}_dot`];
     if (!rates) return a + x * (b - a);
     const y = 1 - x;
     return a * y * y * (1 + 2 * x) + b * x * x * (3 - 2 * x) + h * x * y * (y * rates[i] - x * rates[i + 1]);
   }
-}
-
-/** Whether rounding alone tips the wheel: exactly upright, its lean grows from 1e-16 rad to a thousandth. */
-export function tipsByRounding({columns: {theta}}) {
-  const lean = theta.map((angle) => Math.abs(angle - Math.PI / 2));
-  return lean[0] < 1e-12 && lean[1] < 1e-9 && extent(lean)[1] > 1e-3;
 }
 
 /** Contact with the ground, O - (r_0 + r sin theta) e2 - r cos theta e3, seen from above; r drops out. */

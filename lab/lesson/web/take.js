@@ -1,11 +1,8 @@
-// The card "Export": the values, a picture, a video, and of the live page its link and the commands that make the
-// same run.
-import {commands} from '#commands';
-import {$, make, makeChoice} from '#dom';
-import {compose, encodes, film} from '#film';
+// The card "Export": the values, a picture, and of the lesson its link.
+import {$, colour, make, write} from '#dom';
 import {POSE} from '#table';
 
-const FIXED = ['r_0', 'r', 'slope', 'slope_direction'];
+const GAP = 10;  // CSS pixels
 const wordOf = (name) => name.replace(/[^\w]+/g, '_');
 
 /** Hands a file to the reader. */
@@ -27,19 +24,19 @@ async function copy(text, {currentTarget: button}) {
 }
 
 /**
- * Bodies as CSV files [[name, content]] in the columns that `./scripts/view` reads back: SI, numbers with all their
- * digits; bodies that share their instants share a file.
+ * Wheels as CSV files [[name, content]] in the columns that `./scripts/view` reads back: SI, numbers with all their
+ * digits, and every parameter but the start; wheels that share their instants share a file.
  */
-function csvFiles(bodies) {
-  const groups = Map.groupBy(bodies, ({table}) => table.time.join());
+function csvFiles(wheels) {
+  const groups = Map.groupBy(wheels, ({table}) => table.time.join());
   return [...groups.values()].map((group) => {
     const [{name, table: {time, rows}}] = group;
     const plain = group.length === 1 && POSE.every((column) => group[0].table.has(column));
-    const columns = group.flatMap((body) => {
-      const prefix = plain ? '' : `${wordOf(body.name)}.`;
-      const given = Object.entries(body.parameters ?? {}).filter(([column]) => FIXED.includes(column));
+    const columns = group.flatMap(({name: own, table, parameters}) => {
+      const prefix = plain ? '' : `${wordOf(own)}.`;
+      const given = Object.entries(parameters).filter(([column]) => !column.endsWith('_start') && !table.has(column));
       const fixed = given.map(([column, value]) => [column, Array(rows).fill(value)]);
-      const moving = Object.entries(body.table.columns).filter(([column]) => column !== 'time');
+      const moving = Object.entries(table.columns).filter(([column]) => column !== 'time');
       return [...moving, ...fixed].map(([column, values]) => [prefix + column, values]);
     });
     const all = [['time', time], ...columns];
@@ -50,10 +47,50 @@ function csvFiles(bodies) {
   });
 }
 
+/** The wheels' labels where they stand over the scene. */
+function drawLabels(pen, {stage, shown}) {
+  const scene = stage.canvas.getBoundingClientRect();
+  for (const {tag, label, colour: fillStyle} of shown) {
+    const {x, y, height} = tag.getBoundingClientRect();
+    const [left, line] = [x - scene.x + 12, y - scene.y + height / 2];
+    Object.assign(pen, {fillStyle}).beginPath();
+    pen.arc(left + 6, line, 6, 0, 7);
+    pen.fill();
+    pen.fillStyle = colour('--ink');
+    write(pen, [label, tag.title].filter(Boolean).join(' – '), left + 20, line, 15);
+  }
+}
+
+/** The page at the present instant on a canvas: scene, key of the arrows, diagrams. */
+export function compose(page) {
+  const {stage, plots, player} = page;
+  const {ratio} = stage;
+  const {clientWidth: width, clientHeight: height} = stage.canvas;
+  const host = $('#plots').getBoundingClientRect();
+  const scale = (width - GAP) / host.width;
+  const [right, below] = [width, height + 3 * GAP + scale * host.height + GAP].map((edge) => Math.round(ratio * edge));
+  const canvas = make('canvas', {width: right, height: below});
+  const pen = canvas.getContext('2d', {alpha: false});
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.fillStyle = colour('--paper');
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(stage.canvas, 0, 0, width, height);
+  Object.assign(pen, {textBaseline: 'middle', textAlign: 'left'});
+  drawLabels(pen, page);
+  write(pen, `t = ${player.t.toFixed(2)} s`, width - 106, height - 20, 15);
+  write(pen, [...$('#legend').children].map(({textContent}) => textContent).join(' · '), GAP, height + 1.3 * GAP, 13);
+  for (const {canvas: drawn, kind} of plots.all.filter(({figure}) => !figure.hidden)) {
+    const place = drawn.getBoundingClientRect();
+    const [x, y] = [scale * (place.left - host.left), height + 3 * GAP + scale * (place.top - host.top)];
+    pen.drawImage(drawn, x, y, scale * place.width, scale * place.height);
+    write(pen, kind.unit ? `${kind.title} [${kind.unit}]` : kind.title, x + 6, y - 10 * scale, 13 * scale);
+  }
+  return canvas;
+}
+
 /** What the buttons of the card do. */
 export function setUpTaking(page) {
   const host = $('#take');
-  const {live} = page;
   const on = (name, act) => $(`[name=${name}]`, host).addEventListener('click', act);
   on('csv', () => csvFiles([...new Set(page.views.flat())]).forEach((file) => save(...file)));
   on('png', () => {
@@ -61,30 +98,5 @@ export function setUpTaking(page) {
     const name = `wheel_${page.player.t.toFixed(2)}s.png`;
     compose(page).toBlob((blob) => save(name, blob), 'image/png');
   });
-  let filming = false;
-  on('film', async ({currentTarget: button}) => {  // a second click ends it
-    filming = !filming;
-    if (!filming) return;
-    const left = (seconds) => {
-      button.textContent = `End the video${seconds < Infinity ? `: ${Math.ceil(seconds)} s left` : ''}`;
-      return filming;
-    };
-    const blob = await film(page, left);
-    filming = false;
-    button.textContent = 'Video (WebM)';
-    save('wheel.webm', blob);
-  });
-  const title = 'Videos need Chrome or Edge 94, Firefox 130, or later: this browser encodes no VP9';
-  encodes().then((can) => can || Object.assign($('[name=film]', host), {disabled: true, title}));
-  if (!live) return;
-  on('link', (event) => copy(live.link.href, event));
-  on('copy', (event) => copy($('pre', host).textContent, event));
-  const titles = {fmpy: 'The command line of FMPy', Python: 'A script with FMPy', C: 'A program without any library'};
-  const options = Object.entries(titles).map(([name, title]) => ({name, title, textContent: name}));
-  const mark = makeChoice($('.tabs', host), options, (name) => {
-    mark(name);
-    $('pre', host).textContent = commands(live.plan, live.interval, live.fmu.guid)[name];
-  });
-  mark('fmpy');
-  host.addEventListener('beforetoggle', () => $('[aria-checked=true]', host).click());  // for the present plan
+  on('link', (event) => copy(page.lesson.link.href, event));
 }

@@ -1,5 +1,5 @@
 """Builds the site of all documents, the folder build/site, for any static host. It has search and formulas, reports,
-the notebook, the reference of the C header, and the live page, and is self-contained; a broken link fails the build."""
+the notebook, the reference of the C header, and the lesson, and is self-contained; a broken link fails the build."""
 
 import shutil
 from argparse import Namespace
@@ -12,7 +12,7 @@ SOURCE, SITE = ROOT / "lab" / "site", ROOT / "build" / "site"
 OPTIONS = {
     "--documents": {
         "action": "store_true",
-        "help": "without the live page, which is compiled with the releases' compiler",
+        "help": "without the lesson, which is compiled with the releases' compiler",
     }
 }
 

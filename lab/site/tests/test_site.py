@@ -109,7 +109,7 @@ def test_links_that_lead_nowhere_stop_the_site(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("live", ["live.html", ""])
-def test_a_step_of_the_story_opens_the_live_page_where_the_site_has_one(live: str) -> None:
+def test_a_step_opens_the_lesson_where_the_site_has_it(live: str) -> None:
     read = runpy.run_path(str(CONF / "conf.py"))["read"]
     source = [(ROOT / "docs" / "teaching.md").read_text(encoding="utf-8")]
     read(SimpleNamespace(config=SimpleNamespace(html_context={"live": live})), "docs/teaching", source)
