@@ -1,6 +1,6 @@
 """The files that a user takes, dist/: the paper's two scenes by the released FMU, and the page about the files.
 
-The error is that of the documents: of the four headline outputs, at 101 instants, over the range of each.
+The error is that of the documents: of the four headline outputs, every 10 ms, over the range of each.
 """
 
 import re
@@ -28,7 +28,7 @@ each = pytest.mark.parametrize("scene", ROLLING_RESISTANCE)
 
 
 def run(library: Library, scene: str, tolerance: float | None = None) -> Run:
-    return library.simulate(np.linspace(0, 10, 101), tolerance, s=ROLLING_RESISTANCE[scene])
+    return library.simulate(np.linspace(0, 10, 1001), tolerance, s=ROLLING_RESISTANCE[scene])
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +79,7 @@ def test_the_page_of_a_release_names_its_commit_and_what_lies_beside_it(tmp_path
     (tmp_path / "wheel.fmu").write_bytes(b"an archive")
     page = folder.page_of(tmp_path, "9.9.9", "0123abcd")
     assert "# wheel.fmu 9.9.9" in page and "`0123abcd`" in page and "wheel_lesson.html" not in page
+    assert "draft" not in page and "a draft" in folder.page_of(tmp_path, "9.9.9", "0123abcd", draft=True)
     assert f"| {folder.sum_of(tmp_path / 'wheel.fmu')} |" in page
     (tmp_path / "wheel.fmu").write_bytes(b"another archive")
     assert f"| {folder.sum_of(tmp_path / 'wheel.fmu')} |" not in page

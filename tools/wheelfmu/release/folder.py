@@ -61,13 +61,13 @@ def write(out: Path, fmu: Path, site: Path, text: str) -> None:
     (out / "SHA256SUMS").write_bytes(sums)
 
 
-def described() -> tuple[str, str]:
-    """The version and its notes."""
+def described() -> tuple[str, str, bool]:
+    """The version, its notes, and whether it is a draft."""
     number = version()
     text, draft = notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), number)
     if draft:
         print(f"CHANGELOG.md has a section {DRAFT}: give it the version and the date before you tag.", file=sys.stderr)
-    return number, text
+    return number, text, draft
 
 
 def commit() -> str:
@@ -84,15 +84,15 @@ def sum_of(file: Path) -> str:
     return sha256(file.read_bytes()).hexdigest()
 
 
-def page_of(place: Path, number: str, source: str) -> str:
-    """The page about the files of a folder."""
+def page_of(place: Path, number: str, source: str, *, draft: bool = False) -> str:
+    """The page about the files of a folder; a draft is a version that the changelog does not date yet."""
     files = [
         {"name": path.name, "size": f"{path.stat().st_size / 1e3:.0f}", "sum": sum_of(path)}
         for path in sorted(place.iterdir())
         if path.name != "README.md"
     ]
     lesson = any(file["name"] == LESSON for file in files)
-    return page("dist.md.j2", version=number, commit=source, files=files, lesson=lesson)
+    return page("dist.md.j2", version=number, commit=source, files=files, lesson=lesson, draft=draft)
 
 
 def distribute(fmu: Path, source: str) -> None:
@@ -100,11 +100,12 @@ def distribute(fmu: Path, source: str) -> None:
     deliver(fmu, DIST / "wheel.fmu")
     if (ROOT / "lab" / "lesson").exists():
         subprocess.run(["bash", "scripts/page", DIST / LESSON, "--overwrite"], cwd=ROOT, check=True)
-    (DIST / "README.md").write_text(page_of(DIST, version(), source), encoding="utf-8")
+    number, _, draft = described()
+    (DIST / "README.md").write_text(page_of(DIST, number, source, draft=draft), encoding="utf-8")
 
 
 def publish(fmu: Path, site: Path) -> None:
-    number, text = described()
+    number, text, _ = described()
     out = (ROOT / "build" / f"wheel-{number}").relative_to(Path.cwd())
     write(out, fmu, site, text)
     print("dist/ has the files for the repository. Commit them and docs/results/platforms.md as the release.")
