@@ -217,9 +217,9 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
 // (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend on the size
 // of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
-  CONSTANT(double, reserve, 0.2, "of the size", "a step is shorter than fits its error, so that few are refused");
-  CONSTANT(double, least_error, 1e-6, "1", "smaller errors are mostly rounding");
-  const double fitting = (1 - reserve) / eighth_root(std::fmax(error, least_error));
+  CONSTANT(double, spare, 0.2, "of the size", "a step is shorter than fits its error, so that few are refused");
+  CONSTANT(double, rounded_error, 1e-6, "1", "smaller errors are mostly rounding");
+  const double fitting = (1 - spare) / eighth_root(std::fmax(error, rounded_error));
   const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
   if (!known_ || !stops || next < liked_) liked_ = next;
   if (!known_ || !problem.turning) return;
