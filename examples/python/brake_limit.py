@@ -1,4 +1,4 @@
-"""The brake limited to the friction of the road by one Newton step before each communication step. SI units."""
+"""The brake limited to the friction of the road by Newton's method before each communication step. SI units."""
 
 from math import pi
 
@@ -10,11 +10,15 @@ MU, BRAKE, STATE = [number["mu_required"]], [number["M_brake"]], [number["X_O"],
 
 
 def brake(wheel, wanted, grip):
-    """Sets the capacity `wanted`, or as much as the road transmits: one Newton step to mu_required = grip."""
-    wheel.setReal(BRAKE, [wanted])
-    mu = wheel.getReal(MU)[0]
-    if mu > grip and (slope := wheel.getDirectionalDerivative(MU, BRAKE, [1.0])[0]) > 0:
-        wheel.setReal(BRAKE, [max(0.0, wanted - (mu - grip) / slope)])
+    """Sets the capacity `wanted`, or as much as the road transmits: mu_required = grip. On a straight line one step of
+    Newton's method is exact; in a turn mu_required is the root of a sum of squares, and some more are needed."""
+    for _ in range(20):
+        wheel.setReal(BRAKE, [wanted])
+        over = wheel.getReal(MU)[0] - grip
+        if over <= 1e-12 * grip or (slope := wheel.getDirectionalDerivative(MU, BRAKE, [1.0])[0]) <= 0:
+            break
+        wanted = max(0.0, wanted - over / slope)
+    return wanted
 
 
 def started(**values):
@@ -26,11 +30,12 @@ def started(**values):
     return wheel
 
 
-v, grip, h, t = 25.0, 0.4, 0.001, 0.0
-start = {"psi_start": 0, "theta_start": pi / 2, "X_O_start": 0, "phi_dot_start": -v / 0.35, "s": 0.004}
-wheel = started(**start)
-while wheel.getReal(STATE)[1] < 0:
-    brake(wheel, 500.0, grip)
-    wheel.doStep(t, h)
-    t += h
-print(f"Stopping distance: {wheel.getReal(STATE)[0]:.2f} m; v^2 / (2 mu g) = {v**2 / (2 * grip * 9.81):.2f} m.")
+if __name__ == "__main__":
+    v, grip, h, t = 25.0, 0.4, 0.001, 0.0
+    start = {"psi_start": 0, "theta_start": pi / 2, "X_O_start": 0, "phi_dot_start": -v / 0.35, "s": 0.004}
+    wheel = started(**start)
+    while wheel.getReal(STATE)[1] < 0:
+        brake(wheel, 500.0, grip)
+        wheel.doStep(t, h)
+        t += h
+    print(f"Stopping distance: {wheel.getReal(STATE)[0]:.2f} m; v^2 / (2 mu g) = {v**2 / (2 * grip * 9.81):.2f} m.")

@@ -11,18 +11,14 @@ namespace orbit {
 
 namespace {
 
-CONSTANT(double, finer, 0.05, "of the tolerance",
-         "the half is integrated so exactly, since its error is added once for every half");
+CONSTANT(double, finer, 0.05, "of the tolerance", "of the integrated half, whose error is added once for every half");
 CONSTANT(double, finest, 1e-14, "1", "of a tolerance: rounding allows no more");
-CONSTANT(double, loosest, 1e-8, "1",
-         "a looser tolerance saves little in one nutation, and its long steps are less accurate than they estimate");
+CONSTANT(double, loosest, 1e-8, "1", "a looser one saves little in one nutation, and its steps are less accurate");
 CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every turn of the run repeats these few steps");
 // In units of the fraction of the tolerance.
-CONSTANT(double, least_swing, 0.01, "errors",
-         "a smaller swing of omega_1 cannot be told from the errors of a few steps");
+CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may be the errors of a few steps");
 CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
-CONSTANT(double, largest_break, 0.1, "errors",
-         "change of a state in the longest step by what breaks the symmetry, which rounding does too");
+CONSTANT(double, largest_break, 0.1, "errors", "within the longest step, by what breaks the symmetry: rounding too");
 CONSTANT(int, samples, 8, "instants", "of a half, at which its symmetry is tested");
 
 }  // namespace
@@ -53,7 +49,7 @@ bool Orbit::enter(const Motion& motion, bool known, solver::Solver& solver) {
   return result_ != Result::refused && begin(motion);
 }
 
-Orbit::Result Orbit::build(const Motion& motion, solver::Solver& solver) {
+void Orbit::build(const Motion& motion, solver::Solver& solver) {
   const double tolerance = motion.tolerance;
   solver::Problem problem = motion.problem;
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
@@ -62,10 +58,9 @@ Orbit::Result Orbit::build(const Motion& motion, solver::Solver& solver) {
   problem.longest_step *= shortening;
   *this = Orbit();
   std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
-  if (is_steady(problem, from_zero)) return result_ = Result::steady;
+  if (is_steady(problem, from_zero)) return;
   result_ = follow(problem, motion.on_event, from_zero, solver);
   counters_ = solver.counters();
-  return result_;
 }
 
 bool Orbit::begin(const Motion& motion) {

@@ -117,7 +117,7 @@ class Orbit {
   };
 
   // building.cpp: `build` integrates, `begin` places the start
-  Result build(const Motion& motion, solver::Solver& solver);
+  void build(const Motion& motion, solver::Solver& solver);
   bool begin(const Motion& motion);
   template <class Map>
   bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;

@@ -57,17 +57,16 @@ constexpr Table make_table() {
 }
 constexpr Table radau = make_table();
 
-CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over the tolerance of the whole solution");
+CONSTANT(double, part_of_tolerance, 0.2, "1", "error of a step over that of the solution, tuned on the wheel's scenes");
 CONSTANT(double, distance, 0.1, "1", "how far the sweeps may be from their limit, over the error of the step");
 CONSTANT(double, error_of_last, 0.005, "1", "error of the polynomial over its last term");
 CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the terms fall less fast");
 CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
 CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
-CONSTANT(double, longer, 1.01, "1", "a step that nearly reaches the stop ends there: no tiny step");
+CONSTANT(double, stretch_to_stop, 0.01, "of the step", "by which it is longer to end at the stop: no tiny step");
 CONSTANT(double, leapt, 1e3, "errors", "what a step over a bend counts as: the next one is a third as long");
 CONSTANT(double, most_widths, 4, "widths", "the most of a bend that six points can follow in a step");
-CONSTANT(double, roundings, 2, "roundings of time",
-         "the shortest step: settling states may do in it what they will, the others hardly move");
+CONSTANT(double, roundings, 2, "roundings of time", "the shortest step, in which only states that settle move");
 
 // (rates at the points) => y at the point j of a step of this size
 Row state_at(int j, const Step& step, double size, const double (&f)[radau_points][max_states]) {
@@ -209,7 +208,7 @@ double Collocation::try_size(const Problem& problem, const double* weights, bool
 // (wanted size, stop) => size and end of the step; whether it is `stop`, where that is near
 bool Collocation::size_up(const Problem& problem, double stop, double shortest, Step* step) {
   size_ = std::fmin(std::fmax(liked_, shortest), problem.longest_step);
-  const bool stops = step->start + longer * size_ >= stop;
+  const bool stops = step->start + (1 + stretch_to_stop) * size_ >= stop;
   if (stops) size_ = stop - step->start;
   step->end = stops ? stop : step->start + size_;
   return stops;
@@ -218,9 +217,9 @@ bool Collocation::size_up(const Problem& problem, double stop, double shortest, 
 // (error of this step) => size of the next. Where the direction starts off its limit, errors hardly depend on the size
 // of long steps; a state that settles at a speed changes as 1 / speed.
 void Collocation::like(const Problem& problem, double error, int attempts, bool stops, const Step& step) {
-  CONSTANT(double, safety, 0.8, "1", "a step is sized for an error of safety^8, so that few are refused");
+  CONSTANT(double, reserve, 0.2, "of the size", "a step is shorter than fits its error, so that few are refused");
   CONSTANT(double, least_error, 1e-6, "1", "smaller errors are mostly rounding");
-  const double fitting = safety / eighth_root(std::fmax(error, least_error));
+  const double fitting = (1 - reserve) / eighth_root(std::fmax(error, least_error));
   const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
   if (!known_ || !stops || next < liked_) liked_ = next;
   if (!known_ || !problem.turning) return;

@@ -36,17 +36,14 @@ namespace {
 
 double* data(N_Vector v) { return N_VGetArrayPointer(v); }
 
-CONSTANT(double, cvode_share, 0.003, "1",
-         "error of a step over the tolerance of the whole solution, tuned on the wheel's scenes");
+CONSTANT(double, cvode_share, 0.003, "1", "error of a step over that of the solution, tuned on the wheel's scenes");
 
 // The step size is kept while it would change by a factor between these two. CVODE's defaults, 0 and 1.5, avoid the
 // cost of a new matrix in stiff problems; here a changed step costs nothing. Version 7.1.1 ignores a lower bound of 1.
 constexpr double keep_step_above = 0.9999, keep_step_below = 1.02;
 
-CONSTANT(double, corrector_share, 0.05, "1",
-         "of the step's error, left by the corrector: two evaluations a step, which saves more in steps than it costs");
-CONSTANT(int, highest_adams_order, 9, "1",
-         "higher ones gain nothing here, and prediction costs the square of the order");
+CONSTANT(double, corrector_share, 0.05, "1", "of the step's error: two evaluations a step, which saves steps");
+CONSTANT(int, highest_adams_order, 9, "1", "higher ones gain nothing, and prediction costs its square");
 
 int derivative(double t, N_Vector y, N_Vector y_dot, void* user) {
   auto& call = *static_cast<CvodeObjects::Call*>(user);

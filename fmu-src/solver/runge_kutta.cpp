@@ -19,10 +19,10 @@ namespace {
 using dormand_prince::stages;
 
 CONSTANT(double, share_of_tolerance, 0.03, "1",
-         "error of a step over the tolerance of the whole solution, tuned on the wheel's scenes");
+         "error of a step over that of the solution, tuned on the wheel's scenes");
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
-CONSTANT(double, safety, 0.9, "1", "a step is sized for an error of safety^8, so that few are refused");
-CONSTANT(double, stretch, 1.01, "1", "a step that nearly reaches the stop ends there: no tiny step, 8 % more error");
+CONSTANT(double, reserve, 0.1, "of the size", "a step is shorter than fits its error, so that few are refused");
+CONSTANT(double, stretch, 0.01, "of the step", "by which it grows to end at the stop: no tiny step, 8 % more error");
 CONSTANT(double, least_error, 1e-6, "1", "smaller errors, as after a step cut short, are mostly rounding");
 
 // The stages that enter a row of the table.
@@ -127,7 +127,7 @@ struct RungeKutta::Work {
     const double before = engine.last_error_;
     const double trend = before > 0 ? (h / engine.size_) * eighth_root(before / error) : 1;
     engine.last_error_ = error;
-    return h * std::clamp(safety / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
+    return h * std::clamp((1 - reserve) / eighth_root(error) * std::clamp(trend, 0.5, 2.0), 0.2, 10.0);
   }
 
   // Null, or the reason why no step is accepted.
@@ -153,7 +153,7 @@ struct RungeKutta::Work {
     h = std::fmin(*liked, longest);
     bool rejected = false;
     for (int attempts = 0; attempts < most_attempts; ++attempts) {
-      const bool stops = t + stretch * h >= stop;
+      const bool stops = t + (1 + stretch) * h >= stop;
       if (stops) h = stop - t;
       const bool waits = stops || h == limit;  // most often the problem changes where this step ends
       if (!stops && h <= rounding_at(t)) break;
@@ -162,7 +162,7 @@ struct RungeKutta::Work {
       double error = try_size();
       if (error <= 1 && !waits && !evaluate_end()) error = INFINITY;
       if (!(error <= 1)) {
-        h = *liked = h * std::fmax(0.2, safety / eighth_root(error));
+        h = *liked = h * std::fmax(0.2, (1 - reserve) / eighth_root(error));
         rejected = true;
         continue;
       }

@@ -5,16 +5,15 @@
 
 #ifdef WHEEL_CONSTANTS
 #include <cstdlib>
-#include <cstring>
 #include <string>
+#include <string_view>
 
 namespace support {
 inline double changed(const char* file, const char* name, double value) {
   const char *chosen = std::getenv("WHEEL_CONSTANT"), *factor = std::getenv("WHEEL_FACTOR");
-  if (!chosen || !factor) return value;
-  std::string stem = std::strrchr(file, '/') ? std::strrchr(file, '/') + 1 : file;
-  stem.resize(stem.find('.'));
-  return stem + "." + name == chosen ? value * std::strtod(factor, nullptr) : value;
+  const std::string_view path = file, base = path.substr(path.rfind('/') + 1);
+  const std::string whole = std::string(base.substr(0, base.find('.'))) + "." + name;
+  return chosen && factor && whole == chosen ? value * std::strtod(factor, nullptr) : value;
 }
 }  // namespace support
 

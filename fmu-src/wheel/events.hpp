@@ -9,8 +9,7 @@ namespace wheel {
 
 using solver::Consequence;
 
-CONSTANT(double, spin_error, 1e-3, "of the scale of rates",
-         "beyond zero by less, a spin is the error of the solver that brought it there");
+CONSTANT(double, spin_error, 1e-3, "of the scale of rates", "beyond zero by less, a spin is an error of the solver");
 
 struct EventRow {
   Event event;

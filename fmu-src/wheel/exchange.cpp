@@ -13,11 +13,8 @@
 namespace wheel {
 namespace {
 
-CONSTANT(double, distance, 1e-12, "1",
-         "added to every indicator: one that rests at zero after an event must not count as a second one; at 1e-6 the "
-         "instants would be wrong by as much");
-CONSTANT(double, soon, 1e-7, "time scales",
-         "an event so close ahead has happened: some solvers stop before the sign changes, again and again");
+CONSTANT(double, distance, 1e-12, "1", "added to every indicator: one at rest at zero is no second event");
+CONSTANT(double, soon, 1e-7, "time scales", "an event so close ahead has happened: some solvers stop short of it");
 
 // In the order of x: its variables, and the states of y to which they belong.
 constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,

@@ -36,8 +36,7 @@ int zeros_of_slope(const double* c, double* zeros) {
 
 // Whether `next` is c seen from tau on.
 bool continues(const double* c, double tau, double rounding, const double* next) {
-  CONSTANT(double, relative, 64 * std::numeric_limits<double>::epsilon(), "1",
-           "rounding of a polynomial that a caller cuts into steps");
+  CONSTANT(double, relative, 64 * std::numeric_limits<double>::epsilon(), "1", "of a polynomial cut into steps");
   const double shifted[] = {value_at(c, tau), rate_at(c, tau), c[2] + 3 * tau * c[3], c[3], 0};
   const double size[] = {std::fabs(c[0]), std::fabs(c[1]), std::fabs(c[2]), std::fabs(c[3])}, length = std::fabs(tau);
   const double sums[] = {value_at(size, length), rate_at(size, length), size[2] + 3 * length * size[3], size[3]};

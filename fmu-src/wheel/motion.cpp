@@ -26,8 +26,7 @@ namespace {
 
 using solver::Outcome;
 
-CONSTANT(long long, most_work, 1000000, "internal steps",
-         "that one call may do, however long its communication step is: some seconds of computing");
+CONSTANT(long long, most_work, 1000000, "internal steps", "of one call, however long its step is: some seconds");
 CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a new start, the short steps after it");
 CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
 CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");

@@ -52,7 +52,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const double theta = y[WHEEL_THETA];
   CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
   CONSTANT(double, width, 10, "omega_s over sqrt(tolerance)",
-           "error of the spin inside a regularized law, second order");
+           "error of the spin in a regularized law, of second order");
   const bool multibody = setup.formulation == &wheel_multibody;
   const double slow = share * setup.tolerance;
   const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;

@@ -24,7 +24,7 @@ double power_of_two_below(double x) {
 // changes no scale: it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
   CONSTANT(double, longest, 0.6, "time scales",
-           "the longest step: at an unstable rest the error estimate is zero, and steps would grow without limit");
+           "at an unstable rest the error estimate is zero: steps would grow without limit");
   const WheelParameters& wheel = setup.scene.wheel;
   const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
@@ -43,8 +43,7 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
 // whichever is larger.
 void set_error_scales(Setup& setup) {
   CONSTANT(double, slip, 0.15, "lengths over the time scale", "error of a slip that counts as one of 1 rad");
-  CONSTANT(double, loose, 3, "rad, or lengths",
-           "error of heading, roll angle and place that counts as one of 1 rad in theta");
+  CONSTANT(double, loose, 3, "rad, or lengths", "error of heading, roll angle, place that counts as 1 rad in theta");
   const double length = setup.length, slowest = 1 / setup.time_scale;
   const double rate = std::max(slowest, setup.tilting);
   setup.slip_scale = slip * slowest * length;

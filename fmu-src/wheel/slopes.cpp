@@ -98,8 +98,7 @@ struct Quotients {
   template <class MoveTo>
   bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
     constexpr double finest = std::numeric_limits<double>::epsilon();
-    CONSTANT(double, finest_first, 1e-10, "of the scale",
-             "where no larger step is possible, the quantity is at its limit");
+    CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
     bool done = false;
     double part = 1e-3;
     while (part > (done ? finest : finest_first) && !settle(scale)) {

@@ -1,7 +1,10 @@
-"""The regularized law over its width, and hours of motion. Stiff and extreme wheels: tests/robustness."""
+"""The regularized law over its width, hours of motion, the drift of the paper's twelve states.
+
+Stiff and extreme wheels: tests/robustness."""
 
 from __future__ import annotations
 
+from itertools import product
 from time import perf_counter
 
 import numpy as np
@@ -9,6 +12,8 @@ import pandas as pd
 
 from wheelfmu.fmu.driver import WARNING, Values
 from wheelfmu.truth.measure import law_error
+from wheelfmu.truth.misprints import WHEEL, papers_start
+from wheelfmu.truth.paper_transcription import FORMS, Paper, marched
 
 from . import plots
 from .page import Report, Row, Tables, number, part
@@ -69,3 +74,31 @@ def hours(report: Report) -> dict[str, object]:
     runs = pd.DataFrame([long_run(report, *run) for run in chosen])
     growth, rise = runs["µs/s, last sixth"] / runs["µs/s, first sixth"], runs["largest rise, J"] / runs["E"]
     return {"hours": runs.drop(columns="E"), "growth": growth.max(), "rise": rise.max() / TOLERANCE}
+
+
+# ---- the paper's twelve states ----
+
+STEPS, ENDS = (0.04, 0.02, 0.01), (1.0, 4.0, 16.0)  # s
+
+
+def left(form: type[Paper], step: float, end: float, y: np.ndarray) -> Row:
+    """How far a state of the paper's free wheel is off the constraints of (24)."""
+    paper = form(WHEEL, y)
+    off = {
+        "velocity of the contact, m/s": np.abs(paper.slip).max(),
+        "height off the contact, m": np.abs(paper.height_error),
+    }
+    name = next(name for name, each in FORMS.items() if each is form)
+    return {"(24)": name, "step, s": step, "t, s": end} | {what: float(value) for what, value in off.items()}
+
+
+@part(20)
+def drift(_report: Report) -> dict[str, object]:
+    """the paper's system in all its twelve states, by the classical Runge-Kutta method: what its constraints lose"""
+    rows = []
+    for form, step in product(FORMS.values(), STEPS):
+        y, t = papers_start(), 0.0
+        for end in ENDS:
+            y, t = marched(form, WHEEL, y, step, round((end - t) / step)), end
+            rows.append(left(form, step, end, y))
+    return {"drift": pd.DataFrame(rows)}

@@ -15,8 +15,8 @@ from math import cos, sin, tan
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .car_judges import J_X, J_Z, M_WHEEL, WHEELS, R, constants, rise
-from .options import Manoeuvre
+from .judges import WHEELS, car, rise
+from .options import J_X, J_Z, M_WHEEL, Manoeuvre, R
 from .vehicle import Table
 
 LEVEL = {"J_1": 1e15, "J_2": 1e15}  # kg m2: with these the chassis FMU stays in the plane for seconds, to 1e-10 rad
@@ -24,9 +24,11 @@ LEVEL = {"J_1": 1e15, "J_2": 1e15}  # kg m2: with these the chassis FMU stays in
 
 def solved(run: Manoeuvre, times: np.ndarray) -> Table:
     """Its motion at some instants: the columns of the car that are compared."""
-    c, hubs = constants(run), np.array([[run[f"x_{w}"], run[f"y_{w}"]] for w in WHEELS])
-    steer, drive, brake = (np.array([run[f"{name}_{w}"] for w in WHEELS]) for name in ("steer", "drive", "brake"))
+    c, hubs = car(run), np.array([[run[f"x_{w}"], run[f"y_{w}"]] for w in WHEELS])
+    steer = np.array([1.0, 1.0, 0.0, 0.0])
+    drive, brake = (np.array([run[f"{name}_{w}"] for w in WHEELS]) for name in ("drive", "brake"))
     ahead = hubs[:, 0] - c.x_rear
+    v_0, v_1 = (run.start()["driver"][name] for name in ("v_0", "v_1"))
 
     def parted(y: np.ndarray) -> tuple:
         """Place and velocity of the body; heading, P, steer angle, distance lost; places and speeds of the wheels."""
@@ -53,7 +55,7 @@ def solved(run: Manoeuvre, times: np.ndarray) -> Table:
         arms = (places - r) @ axes
         d_dot = (u[:, None] * e - v) @ axes - omega * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
         f = -run["k_h"] * (arms - hubs) - run["c_h"] * d_dot
-        late = run["v_0"] + (run["v_1"] - run["v_0"]) * rise(t, run["t_v"], run["ramp_v"]) - speed
+        late = v_0 + (v_1 - v_0) * rise(t, run["t_v"], run["ramp_v"]) - speed
         braked = run["B_0"] * rise(t, run["t_brake"], run["ramp_M"])
         axle = drive * (run["k_v"] * late + run["k_i"] * lost) - brake * braked
         u_dot = (np.sum(f @ axes.T * e, axis=1) + axle / R) / (M_WHEEL + J_Z / R**2)
@@ -61,7 +63,7 @@ def solved(run: Manoeuvre, times: np.ndarray) -> Table:
         motion = [omega, P_dot, rate, late], (u[:, None] * e).ravel(), u_dot
         return np.concatenate([v, -axes @ f.sum(0) / c.m_B, *motion])
 
-    at, v = np.array([run["X_start"], run["Y_start"]]), run["v"]  # along X
+    at, v = np.zeros(2), run["v"]  # along X
     y_0 = np.concatenate([at, [v, 0], np.zeros(4), (at + hubs).ravel(), [v] * 4])
     found = solve_ivp(rates, (0, times[-1]), y_0, "DOP853", times, rtol=1e-11, atol=1e-11)
     _, _, omega, _, speed = zip(*map(moved, found.t, found.y.T), strict=True)

@@ -1,7 +1,7 @@
 """The limit of the communication step: couplings of wheel.fmu with bodies, each stable below it and divergent above.
 
-Two runs whose bodies start 1e-6 m/s apart: over many steps their difference decays or grows. Bodies are integrated
-exactly under held forces. SI.
+Two runs whose bodies, or wheel, start at speeds 1e-5 apart: over many steps their difference decays or grows. Bodies
+are integrated exactly under held forces. SI.
 """
 
 import sys
@@ -48,6 +48,12 @@ def steered(c: float) -> tuple:
     return start, AXLES, {"body": 1200.0, "yaw": 1900.0}, [(2e5, c, (name, "Y"), end) for name, end in arms.items()]
 
 
+def at_speed(v: float, lean: tuple, turn: tuple) -> tuple:
+    """A free wheel that links hold upright and straight."""
+    links = [(*lean, ("wheel", "lean"), None), (*turn, ("wheel", "turn"), None)]
+    return {**UPRIGHT, "phi_dot_start": -v / Wheel.R}, {"wheel": Wheel(v=v)}, {}, links
+
+
 def free_wheel(name: str) -> list:
     camber, steer = (4e4, 400.0), (2e4, 100.0)
     return [
@@ -86,6 +92,9 @@ COUPLINGS = {
         [(*BUSHING, (name, "X"), {"body": 1.0, "yaw": b}) for name, b in (("left", -0.8), ("right", 0.6))],
     ),
     "a car at speed, across": steered(2e3),
+    "a free wheel at 10 m/s": at_speed(10.0, (2e3, 60.0), (2e3, 60.0)),
+    "a free wheel at 30 m/s": at_speed(30.0, (2e3, 60.0), (2e3, 60.0)),
+    "a free wheel at 30 m/s, its turn weakly held": at_speed(30.0, (2e4, 400.0), (500.0, 5.0)),
 }
 
 
@@ -94,6 +103,7 @@ class Coupled:
 
     def __init__(self, new, start, wheels, bodies, links, kick: float) -> None:
         self.links, self.bodies, self.properties = links, bodies, wheels
+        start = start if bodies else {**start, "theta_dot_start": kick}
         self.wheels: dict[str, FMU2Wheel] = {name: new().start(**start) for name in wheels}
         self.x, self.v = dict.fromkeys(bodies, 0.0), {name: kick * (i + 1) for i, name in enumerate(bodies)}
         self.origin = {end: self.read(end)[0] for _, _, *ends in links for end in ends if self.of_wheel(end)}

@@ -13,6 +13,7 @@ from support.printed import PAGES
 
 from wheelfmu.fmu.paths import ROOT, build_folder
 from wheelfmu.truth.closed_forms import fall_inertia
+from wheelfmu.truth.measure import paper_errors
 from wheelfmu.truth.scenes import PAPER
 
 README, TOOLS, RECIPES = (PAGES[name] for name in ("README.md", "docs/in_your_tool.md", "docs/recipes.md"))
@@ -70,6 +71,21 @@ def test_the_python_example_has_a_few_lines_and_draws_the_papers_wheel(root, ref
         theta = np.load(root / "run.npy")["theta"][::10]
         within(np.abs(theta - references[scene]["theta"]).max(), 3e-8, "theta off the reference, rad")
         beyond(np.abs(theta - references[other]["theta"]).max(), 0.08, "theta off that of the other scene, rad")
+
+
+def test_the_readme_names_the_packages_that_root_installs():
+    rows = [line.split() for line in (ROOT / "tools" / "packages").read_text(encoding="utf-8").splitlines()]
+    sentence = re.search(r"install the Debian packages (.*?), as far as", README, re.DOTALL)[1]
+    assert re.findall("`(.*?)`", sentence) == sorted(row[1] for row in rows if row[0] == ".")
+
+
+@pytest.mark.parametrize("scene", ["free", "friction"])
+def test_the_readmes_errors_are_those_that_the_glossary_defines(library, scene):
+    figure = float(re.search(rf"([\d.e-]+)<!--accuracy.error_{scene}-->", README)[1])
+    error = max(paper_errors(library, scene).values())
+    within(abs(np.log2(error / figure)), 1, "error over the README's, in doublings")
+    coarse = max(paper_errors(library, scene, 1e-6).values())
+    beyond(abs(np.log2(coarse / figure)), 2, "error at a looser tolerance over the README's, in doublings")
 
 
 def test_the_readmes_commands_for_a_downloaded_file_give_friction_on_any_system(root, references):
@@ -165,7 +181,7 @@ def test_the_master_in_python_stops_the_wheel_when_newton_says_and_again_from_it
     assert found["30"] != found["60"]
 
 
-SHOWN = dict.fromkeys(("vehicle_start", "brake_limit", "car", "anti_lock", "traction_control"), VEHICLE)
+SHOWN = dict.fromkeys(("vehicle_start", "brake_limit", "car", "anti_lock", "traction_control", "carrier"), VEHICLE)
 SHOWN |= {"hill": VEHICLE, "step_limit": VEHICLE, "quarter_car": RECIPES, "gradient": CONTROL}
 
 
@@ -199,7 +215,9 @@ def test_the_shown_ways_are_those_of_friction_and_of_energy():
 def test_the_brake_of_the_example_never_exceeds_the_grip_within_a_step(root):
     lines = (EXAMPLES / "brake_limit.py").read_text(encoding="utf-8")
     assert python(lines.replace('"s": 0.004', '"s": 0.004, "mu_max": 0.41'), root) == shown("brake_limit")
-    locked = python(lines.replace("if mu > grip", "if mu > 9"), root)  # the partner: more than the road bears
+    locked = python(
+        lines.replace("if over <= 1e-12 * grip", "if over <= 9"), root
+    )  # the partner: more than the road bears
     beyond(ways("brake_limit")[1] - float(re.search(r"([\d.]+) m;", locked)[1]), 50, "way less that of a locked one, m")
 
 

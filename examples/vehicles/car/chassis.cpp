@@ -1,4 +1,5 @@
 /* Equations of the chassis: a rigid body on one strut and wheel carrier per wheel, which is a guided wheel.fmu.
+ * Wheels: fl, fr, rl, rr; the front ones are steered.
  *
  * The body has six degrees of freedom: position and velocity of its centre of mass B in fixed axes (Z up), a unit
  * quaternion, and the angular velocity in body axes (x forward, y left, z up, principal axes of inertia). R turns body
@@ -9,7 +10,7 @@
  * Along x and y of the chassis a bushing holds O, f = -k_h d - c_h d_dot; along z the strut does, with F_i its share of
  * the weight and e the travel beyond the free one:
  *
- *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other end of the bar))
+ *   f_z = -(F_i + k d + c d' + k_stop |e| e + k_bar (d - d_other wheel of the axle))
  *
  * f acts on the wheel, -f on the chassis. The carrier turns with the chassis and the steer angle delta_i to the left:
  * the axle's direction is n = (sin delta_i, -cos delta_i, 0) in body axes, and the wheel gets its heading and tilt as
@@ -17,12 +18,12 @@
  *
  *   R n = (sin theta sin psi, -sin theta cos psi, cos theta),   psi_dot_guide = psi' + align (psi - psi_wheel),
  *
- * theta_dot_guide likewise; `align` takes back what the communication steps leave. The chassis carries the wheel's
+ * theta_dot_guide likewise; `align` takes back the angle that the steps leave. The chassis carries the wheel's
  * moments M_guide_1 e1 + M_guide_2 e2, tau_brake e3 and the reaction of the drive.
  *
- * Steering (Ackermann): all wheels turn about one point on the line through the wheels that are not steered. With L
- * from that line to the steered wheels, tan delta_i = (x_i - x_R) tan delta / (L - y_i tan delta). Drive: M_3 = -share
- * M_drive. Until t_couple the chassis runs on straight and each strut gives F_i alone. */
+ * Steering (Ackermann): all wheels turn about one point on the line through the rear wheels. With L from that line to
+ * the front wheels, tan delta_i = L tan delta / (L - y_i tan delta). Drive: M_3 = -share M_drive. Until all wheels are
+ * received the chassis runs straight on, each strut gives F_i alone, and no carrier turns. */
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -30,14 +31,15 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 
 #include "model.hpp"
 
 using Eigen::Matrix3d, Eigen::Quaterniond, Eigen::Vector3d;
 
 enum { at_r = 0, at_q = 3, at_v = 7, at_w = 10, at_psi = 13 }; /* states; the last is the heading, not wrapped */
-enum { at_g = 0, at_share = 3, at_x_R = at_share + wheel_count, at_L, derived_count };
-static_assert(+derived_count <= +max_derived, "too many wheels");
+enum { wheels = 4, front = 2 };                                /* the front wheels come first */
+enum { at_g = 0, at_share = 3, at_x_R = at_share + wheels, at_L };
 
 struct Body {
   explicit Body(const States& x)
@@ -54,24 +56,21 @@ struct Body {
 };
 
 struct Hub {
-  Vector3d arm, d, d_dot;        /* body axes */
-  Vector3d f = Vector3d::Zero(); /* force on the wheel, body axes */
-  Vector3d M;                    /* moment of the wheel on the chassis, fixed axes */
-  double psi_dot, theta_dot;     /* rates of the carrier, rad/s */
+  Vector3d arm = Vector3d::Zero(), d = arm, d_dot = arm; /* body axes */
+  Vector3d f = arm;                                      /* force on the wheel, body axes */
+  Vector3d M = arm;                                      /* moment of the wheel on the chassis, fixed axes */
+  double psi_dot = 0, theta_dot = 0;                     /* rates of the carrier, rad/s */
 };
 
-using Hubs = std::array<Hub, wheel_count>;
-
-/* A value of wheel i: a parameter by the name of that of each wheel. */
-static double of_wheel(const double* u, int each, int i) { return u[each + i * wheel_parameters]; }
+using Hubs = std::array<Hub, wheels>;
 
 /* Shares of the weight F_i = p + q x_i + r y_i in balance: sum F_i = m g cos(slope), sum x_i F_i = sum y_i F_i = 0. */
 static void weigh(const double* u, double* share) {
-  Eigen::Matrix<double, wheel_count, 3> place;
-  for (int i = 0; i < wheel_count; ++i) place.row(i) << 1, of_wheel(u, x_each, i), of_wheel(u, y_each, i);
+  Eigen::Matrix<double, wheels, 3> place;
+  for (int i = 0; i < wheels; ++i) place.row(i) << 1, u[x_fl + i], u[y_fl + i];
   const Eigen::FullPivLU<Matrix3d> balance(place.transpose() * place);
   if (!balance.isInvertible()) throw std::invalid_argument("The hubs must not lie on one line.");
-  Eigen::Map<Eigen::Vector<double, wheel_count>> shares(share);
+  Eigen::Map<Eigen::Vector<double, wheels>> shares(share);
   shares = place * balance.solve(Vector3d(u[m_B] * u[g] * std::cos(u[slope]), 0, 0));
   if (!(shares.array() > 0).all()) throw std::invalid_argument("The centre of mass must lie between the wheels.");
 }
@@ -82,27 +81,17 @@ void model_derive(const double* u, double* d) {
   d[at_g + 1] = downhill * std::sin(u[slope_direction]);
   d[at_g + 2] = -u[g] * std::cos(u[slope]);
   weigh(u, d + at_share);
-  double x[2] = {0, 0}, n[2] = {0, 0};
-  for (int i = 0; i < wheel_count; ++i) {
-    const int steered = of_wheel(u, steer_each, i) > 0.5;
-    x[steered] += of_wheel(u, x_each, i);
-    n[steered] += 1;
-  }
-  if (n[0] == 0 || n[1] == 0) throw std::invalid_argument("Some wheels must be steered, and some not.");
-  d[at_x_R] = x[0] / n[0];
-  d[at_L] = x[1] / n[1] - d[at_x_R];
-  if (d[at_L] == 0) throw std::invalid_argument("The steered wheels must not stand beside the others.");
+  d[at_x_R] = (u[x_rl] + u[x_rr]) / 2;
+  d[at_L] = (u[x_fl] + u[x_fr]) / 2 - d[at_x_R];
+  if (d[at_L] <= 0) throw std::invalid_argument("The front wheels must stand ahead of the rear ones.");
 }
 
-/* Level, with the heading psi_start, at v_start. */
+/* Level, along X at v_start. */
 States model_start(const Now& now) {
-  const double* u = now.u;
   States x = States::Zero();
-  x.segment<3>(at_r) << u[X_start], u[Y_start], u[h_B];
-  x[at_q] = std::cos(u[psi_start] / 2);
-  x[at_q + 3] = std::sin(u[psi_start] / 2);
-  x.segment<3>(at_v) << u[v_start] * std::cos(u[psi_start]), u[v_start] * std::sin(u[psi_start]), 0;
-  x[at_psi] = u[psi_start];
+  x[at_r + 2] = now.u[h_B];
+  x[at_q] = 1;
+  x[at_v] = now.u[v_start];
   return x;
 }
 
@@ -112,8 +101,8 @@ struct Steer {
 
 static Steer steering(const Now& now, int i) {
   const double* u = now.u;
-  if (!(of_wheel(u, steer_each, i) > 0.5)) return {0, 0};
-  const double x = of_wheel(u, x_each, i) - now.d[at_x_R], y = of_wheel(u, y_each, i), L = now.d[at_L];
+  if (i >= front) return {0, 0};
+  const double x = u[x_fl + i] - now.d[at_x_R], y = u[y_fl + i], L = now.d[at_L];
   const double t = std::tan(u[delta]), across = L - y * t, t_i = x * t / across;
   return {std::atan(t_i), x * L * (1 + t * t) / (across * across) / (1 + t_i * t_i) * u[delta_dot]};
 }
@@ -121,58 +110,66 @@ static Steer steering(const Now& now, int i) {
 /* Spring, damper and stops of one strut; positive where it pushes the wheel down. */
 static double strut(const double* u, int i, const Hub& hub) {
   const double d = hub.d[2], e = std::fmax(0, std::fabs(d) - u[travel]);
-  return of_wheel(u, k_each, i) * d + of_wheel(u, c_each, i) * hub.d_dot[2] + std::copysign(u[k_stop] * e * e, d);
+  return u[k_fl + i] * d + u[c_fl + i] * hub.d_dot[2] + std::copysign(u[k_stop] * e * e, d);
 }
 
 /* Wheel i at its place, under the share of the weight alone. */
 static Hub read_hub(const Now& now, const Body& body, int i) {
   const double* u = now.u;
-  const double* in = u + X_O_each + i * wheel_inputs; /* X_O Y_O Z_O, their rates, psi theta, M_guide, tau_brake */
-  const double psi = in[6], theta = in[7];
+  const Vector3d r(u[X_O_fl + i], u[Y_O_fl + i], u[Z_O_fl + i]);
+  const Vector3d v(u[X_O_dot_fl + i], u[Y_O_dot_fl + i], u[Z_O_dot_fl + i]);
+  const double psi = u[psi_fl + i], theta = u[theta_fl + i];
   const double sp = std::sin(psi), cp = std::cos(psi), st = std::sin(theta), ct = std::cos(theta);
   const Vector3d e1(cp, sp, 0), e2(-ct * sp, ct * cp, st), e3(st * sp, -st * cp, ct);
-  const Vector3d p(of_wheel(u, x_each, i), of_wheel(u, y_each, i), u[R] - u[h_B]);
+  const Vector3d p(u[x_fl + i], u[y_fl + i], u[R] - u[h_B]);
   const Steer steer = steering(now, i);
   const double sine = std::sin(steer.angle), cosine = std::cos(steer.angle);
   const Vector3d own(sine, -cosine, 0), n = body.R * own;
   const Vector3d n_dot = body.R * (body.w.cross(own) + steer.rate * Vector3d(cosine, sine, 0));
   const double level = n[0] * n[0] + n[1] * n[1];
   Hub hub;
-  hub.arm = body.R.transpose() * (Vector3d(in) - body.r);
+  hub.arm = body.R.transpose() * (r - body.r);
   hub.d = hub.arm - p;
-  hub.d_dot = body.R.transpose() * (Vector3d(in + 3) - body.v) - body.w.cross(hub.arm);
+  hub.d_dot = body.R.transpose() * (v - body.v) - body.w.cross(hub.arm);
   hub.f[2] = -now.d[at_share + i];
   const double off = std::remainder(std::atan2(n[0], -n[1]) - psi, 2 * std::numbers::pi);
   hub.psi_dot = (n[0] * n_dot[1] - n[1] * n_dot[0]) / level + u[align] * off;
   hub.theta_dot = -n_dot[2] / std::sqrt(level) + u[align] * (std::acos(n[2]) - theta);
-  hub.M = -(in[8] * e1 + in[9] * e2 + (in[10] - u[M_drive] * of_wheel(u, drive_each, i)) * e3);
+  const double about_axle = u[tau_brake_fl + i] - u[M_drive] * u[drive_fl + i];
+  hub.M = -(u[M_guide_1_fl + i] * e1 + u[M_guide_2_fl + i] * e2 + about_axle * e3);
   return hub;
+}
+
+static bool all_received(const double* u) {
+  return received(u, Z_O_fl) && received(u, Z_O_fr) && received(u, Z_O_rl) && received(u, Z_O_rr);
 }
 
 static Hubs read_hubs(const Now& now, const Body& body) {
   const double* u = now.u;
-  Hubs hubs;
-  for (int i = 0; i < wheel_count; ++i) hubs[i] = read_hub(now, body, i);
-  if (!reached(now, t_couple)) return hubs;
-  for (int i = 0; i < wheel_count; ++i) {
-    Hub& hub = hubs[i];
-    hub.f.head<2>() = -u[k_h] * hub.d.head<2>() - u[c_h] * hub.d_dot.head<2>();
-    hub.f[2] -= strut(u, i, hub);
-    if (bar_partner[i] < 0) continue;
-    Hub& other = hubs[bar_partner[i]];
-    const double f = of_wheel(u, k_bar_each, i) * (hub.d[2] - other.d[2]);
-    hub.f[2] -= f;
-    other.f[2] += f;
+  Hubs hubs{};
+  if (!all_received(u)) {
+    for (int i = 0; i < wheels; ++i) hubs[i].f[2] = -now.d[at_share + i];
+    return hubs;
+  }
+  for (int i = 0; i < wheels; ++i) {
+    hubs[i] = read_hub(now, body, i);
+    hubs[i].f.head<2>() = -u[k_h] * hubs[i].d.head<2>() - u[c_h] * hubs[i].d_dot.head<2>();
+    hubs[i].f[2] -= strut(u, i, hubs[i]);
+  }
+  for (const auto& [left, right, k_bar] : {std::tuple{0, 1, u[k_bar_front]}, std::tuple{2, 3, u[k_bar_rear]}}) {
+    const double f = k_bar * (hubs[left].d[2] - hubs[right].d[2]);
+    hubs[left].f[2] -= f;
+    hubs[right].f[2] += f;
   }
   return hubs;
 }
 
-/* m v' = F,  J w' = M - w x J w,  q' = q (0, w) / 2; until t_couple the body runs on straight. */
+/* m v' = F,  J w' = M - w x J w,  q' = q (0, w) / 2; until all wheels are received the body runs straight on. */
 States model_rates(const Now& now, const States& x) {
   const Body body(x);
   States x_dot = States::Zero();
   x_dot.segment<3>(at_r) = body.v;
-  if (!reached(now, t_couple)) return x_dot;
+  if (!all_received(now.u)) return x_dot;
   Vector3d F = Vector3d::Zero(), M = Vector3d::Zero(); /* fixed axes; body axes, about B */
   for (const Hub& hub : read_hubs(now, body)) {
     F -= body.R * hub.f;
@@ -196,21 +193,22 @@ void model_outputs(const Now& now, const States& x, double* y) {
   const Vector3d point(now.d[at_x_R], 0, u[R] - u[h_B]), rear = body.r + body.R * point;
   const Vector3d velocity = body.v + body.R * body.w.cross(point);
   y[X] = body.r[0], y[Y] = body.r[1], y[Z] = body.r[2];
-  y[X_R] = rear[0], y[Y_R] = rear[1];
+  y[X_R] = rear[0], y[Y_R] = rear[1], y[Z_R] = rear[2];
   y[psi] = x[at_psi] + std::remainder(heading - x[at_psi], 2 * std::numbers::pi);
   y[v] = velocity[0] * std::cos(heading) + velocity[1] * std::sin(heading);
   y[omega] = body.R.row(2).dot(body.w);
   y[roll] = std::asin(body.R(2, 1));
   y[pitch] = -std::asin(body.R(2, 0));
-  for (int i = 0; i < wheel_count; ++i) {
+  for (int i = 0; i < wheels; ++i) {
     const Vector3d force = body.R * hubs[i].f;
-    const int of = i * wheel_outputs;
-    std::copy_n(force.data(), 3, y + F_X_each + of);
-    y[M_3_each + of] = -u[M_drive] * of_wheel(u, drive_each, i);
-    y[M_brake_each + of] = u[M_brake] * of_wheel(u, brake_each, i);
-    y[psi_dot_guide_each + of] = hubs[i].psi_dot;
-    y[theta_dot_guide_each + of] = hubs[i].theta_dot;
-    y[d_each + i * wheel_locals] = hubs[i].d[2];
-    y[delta_each + i * wheel_locals] = steering(now, i).angle;
+    y[F_X_fl + i] = force[0];
+    y[F_Y_fl + i] = force[1];
+    y[F_Z_fl + i] = force[2];
+    y[M_3_fl + i] = -u[M_drive] * u[drive_fl + i];
+    y[M_brake_fl + i] = u[M_brake] * u[brake_fl + i];
+    y[psi_dot_guide_fl + i] = hubs[i].psi_dot;
+    y[theta_dot_guide_fl + i] = hubs[i].theta_dot;
+    y[d_fl + i] = hubs[i].d[2];
+    y[delta_fl + i] = steering(now, i).angle;
   }
 }

@@ -1,19 +1,19 @@
-/* Equations of the driver. Fixed axes X, Y; angles to the left.
+/* Equations of the driver. Fixed axes X, Y; angles to the left. The path of a lane change and back begins at the origin
+ * along X:
  *
- * Paths P(p), which begin at the origin along X:
- *   figure of eight  size sin p (1, cos p) / D, D = 1 + cos^2 p, turned by -45 degrees (Bernoulli's lemniscate):
- *                    |dP/dp| = size / sqrt(D), kappa = -3 sin p / (size sqrt(D))
- *   lane change      (p, width / 2 (tanh((p - x_out) / length) - tanh((p - x_back) / length)))
+ *   P(p) = (p, width / 2 (tanh((p - x_out) / length) - tanh((p - x_back) / length)))
+ *
  * The parameter follows the car, p' = (velocity + k_p (r - P)) t / |dP/dp| with t the path's direction. With e the
  * distance to the left of the path, and the path's curvature kappa taken where the car will be after the lag T_delta:
  *
- *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme,   delta' = (delta_ref - delta) /
- * T_delta M_drive = k_v (v_ref - v) + k_i integral (v_ref - v) + programme
+ *   delta_ref = atan(L (kappa - k_y e - k_psi sin(psi - heading))) + programme
+ *   delta'    = (delta_ref - delta) / T_delta
+ *   M_drive   = k_v (v_ref - v) + k_i integral (v_ref - v) + programme
  *
- * All programmes rise by q(x) = x^3 (10 - 15 x + 6 x^2), which has continuous second derivatives. */
+ * All programmes rise by q(x) = x^3 (10 - 15 x + 6 x^2), which has continuous second derivatives. Until the car is
+ * received the driver neither steers nor holds the speed. */
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "model.hpp"
@@ -31,7 +31,7 @@ struct Place {
 static double left_of(const Vector2d& along, const Vector2d& away) { return along[0] * away[1] - along[1] * away[0]; }
 
 void model_derive(const double* u, double*) {
-  if (u[path] != 0 && u[path] != 1 && u[path] != 2) throw std::invalid_argument("path must be 0, 1 or 2.");
+  if (u[path] != 0 && u[path] != 1) throw std::invalid_argument("path must be 0 or 1.");
 }
 
 States model_start(const Now&) { return States::Zero(); }
@@ -41,23 +41,15 @@ static double rise(double t, double from, double duration) {
   return z * z * z * (10 - 15 * z + 6 * z * z);
 }
 
-static Place eight(double A, double p) {
-  const double s = std::sin(p), c = std::cos(p), D = 1 + c * c, turn = 1 / std::numbers::sqrt2;
-  const double x = A * s / D, y = x * c, dx = A * c * (3 - c * c) / (D * D), dy = A * (3 * c * c - 1) / (D * D);
-  return {turn * Vector2d(x + y, y - x), turn * Vector2d(dx + dy, dy - dx), -3 * s / (A * std::sqrt(D))};
-}
-
-static Place lane(const double* u, double p) {
+static Place place(const double* u, double p) {
   const double a = std::tanh((p - u[x_out]) / u[length]), b = std::tanh((p - u[x_back]) / u[length]);
   const double h = u[width] / 2, l = u[length], dy = h / l * (b * b - a * a);
   const double ddy = 2 * h / (l * l) * (b * (1 - b * b) - a * (1 - a * a));
   return {{p, h * (a - b)}, {1, dy}, ddy / std::pow(std::hypot(1, dy), 3)};
 }
 
-static Place place(const double* u, double p) { return u[path] == 1 ? eight(u[size], p) : lane(u, p); }
-
 static double off_path(const double* u, const Place& at) {
-  return left_of(at.dP, Vector2d(u[X_R], u[Y_R]) - at.P) / at.dP.norm();
+  return received(u, Z_R) ? left_of(at.dP, Vector2d(u[X_R], u[Y_R]) - at.P) / at.dP.norm() : 0;
 }
 
 static double steer_rate(const Now& now, const States& x) {
@@ -79,11 +71,13 @@ static double p_rate(const double* u, const Place& at) {
 
 static double speed_error(const Now& now) {
   const double* u = now.u;
+  if (!received(u, Z_R)) return 0;
   return u[v_0] + (u[v_1] - u[v_0]) * rise(now.t, u[t_v], u[ramp_v]) - u[v];
 }
 
 States model_rates(const Now& now, const States& x) {
   States x_dot = States::Zero();
+  if (!received(now.u, Z_R)) return x_dot;
   x_dot[at_delta] = steer_rate(now, x);
   x_dot[at_integral] = speed_error(now);
   if (now.u[path] != 0) x_dot[at_p] = p_rate(now.u, place(now.u, x[at_p]));
@@ -93,7 +87,7 @@ States model_rates(const Now& now, const States& x) {
 void model_outputs(const Now& now, const States& x, double* y) {
   const double *u = now.u, t = now.t;
   y[delta] = x[at_delta];
-  y[delta_dot] = steer_rate(now, x);
+  y[delta_dot] = received(u, Z_R) ? steer_rate(now, x) : 0;
   y[M_drive] = u[k_v] * speed_error(now) + u[k_i] * x[at_integral];
   y[M_drive] += u[M_0] * (rise(t, u[t_on], u[ramp_M]) - rise(t, u[t_off], u[ramp_M]));
   /* 1 - q(x) = q(1 - x), which is never below 0. */

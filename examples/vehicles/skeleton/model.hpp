@@ -23,6 +23,10 @@ struct Now {
 /* Whether the time held by the parameter `time` had come at the last communication point, within rounding. */
 inline bool reached(const Now& now, int time) { return now.begin >= now.u[time] - 1e-9; }
 
+/* Whether the height `Z`, an input, has been received: a point at height 0 lies in the road, and some masters begin
+ * with all inputs at zero. */
+inline bool received(const double* u, int Z) { return u[Z] > 0; }
+
 /* Derived quantities from the parameters; throws std::invalid_argument with the message of a wrong parameter. */
 void model_derive(const double* u, double* d);
 States model_start(const Now& now);

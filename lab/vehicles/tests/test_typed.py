@@ -7,10 +7,8 @@ from support.typed import check_refused, check_taken
 
 REFUSED = {
     "example car v=18,5": "the decimal mark is a point",
-    "example balance k_theta=2,5": "the decimal mark is a point",
+    "example suspended k_h=2,5": "the decimal mark is a point",
     "example car v=fast": "is not a number",
-    "example car path=1.5": "is not one of",
-    "example suspended follow=0.5": "is not one of",
     "example car manoeuvre=loop": "is not one of",
     "example car s=-1": "must be",
     "example car slope=95deg": "must be",
@@ -19,6 +17,12 @@ REFUSED = {
     "example car manoeuvre=lanes": "Do you mean ",
     "example car v=3 v=4": "given twice, as ",
     "example car v": "of the form",
+    "example suspended h=1furlong": "it takes no unit but s or ms",
+    "example car m_B=-1": "m_B = -1: it must be above 0 kg.",
+    "example suspended h=0": "h = 0: it must be above 0 s.",
+    "example suspended stop=1ms h=5ms": "stop = 0.001: it must be at least the step h, 0.005 s.",
+    "example suspended mu_slide=0.4": "mu_slide = 0.4: it must be at most mu_max = 0.",
+    "example control v=3": "this example takes no parameters",
 }
 TAKEN = ("example car path=1 v=18.5", "example suspended exchange=held")
 

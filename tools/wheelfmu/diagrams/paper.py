@@ -13,9 +13,9 @@ degrees beside.
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
-from multiprocessing import Pool
 from pathlib import Path
 
 import numpy as np
@@ -370,8 +370,9 @@ def main(folder: Path, given: dict[str, str], fmu: Path = ROOT / "wheel.fmu") ->
     scenes = [scene for scene in both if np.ptp(scene["time"]) > 0]
     if not scenes:
         sys.exit("run: Neither scene has a motion to draw.")
-    with Pool() as processes:
-        drawn = processes.starmap(draw, wanted := pictures(scenes, folder), chunksize=1)
+    wanted = pictures(scenes, folder)
+    with ProcessPoolExecutor() as processes:  # each ends by itself: none leaves a semaphore
+        drawn = [*processes.map(draw, *zip(*wanted, strict=True))]
     sheets = sum(len(panels) > 1 or len(shown) > 1 for _, shown, panels, _ in wanted)
     names = [png.name for _, png in drawn]
     ends = [*names[sheets:][:1], *names[sheets:][-1:]]

@@ -2,9 +2,14 @@
 
 import sys
 from collections.abc import Iterable
+from threading import RLock
 from typing import Any
 
 from tqdm import tqdm
+
+tqdm.set_lock(
+    RLock()
+)  # for threads alone: the usual one is a semaphore between processes, which Python tracks by one more
 
 
 def bar(steps: Iterable[Any] | None = None, shown: bool = True, **look: Any) -> tqdm:
