@@ -54,7 +54,6 @@ static inline Response response_of(const WheelParameters* w, const Body* b, cons
   const AxleLaw law = {.lever = b->law.lever, .brake = on->brake};
   a.tau = b->law.held ? -M_3 : axle_moment_of(&law, a.N) * b->kappa;
   a.omega_3_dot = b->law.held ? 0 : (M_3 + a.tau) * b->per_spin;
-  a = if_lawful(a);
   return (Response){
       .a = a,
       .u_x = on->a_x + f_x * b->per_mass - f->eta * a.omega_2_dot + f->rho * a.omega_3_dot,
@@ -106,7 +105,9 @@ static inline double room_of(const Body* b, double d_x, double d_y) {
 /* (direction d of the slip) => motion under mu N against it */
 static inline Response slide(const WheelParameters* w, const Body* b, double d_x, double d_y) {
   double force = b->mu * b->N_free / room_of(b, d_x, d_y);
-  return response_of(w, b, &b->given, -force * d_x, -force * d_y);
+  Response response = response_of(w, b, &b->given, -force * d_x, -force * d_y);
+  response.a = if_lawful(response.a);
+  return response;
 }
 
 /* (direction chi of the slip) => N, room, growth, turn, settling */

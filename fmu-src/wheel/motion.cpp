@@ -12,7 +12,9 @@
 #include "motion.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "constant.hpp"
@@ -247,9 +249,18 @@ Outcome advance_by_stages(Wheel& w, double t) {
   return outcome;
 }
 
+// Whether a derivative of an input is not zero: by bits, so that steps with constant inputs lose nothing.
+bool varies(const Polynomials& inputs) {
+  std::uint64_t bits = 0;
+  for (const auto& c : inputs)
+    for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
+  return bits << 1 != 0;
+}
+
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
+  if (!varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
