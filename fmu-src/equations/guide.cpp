@@ -104,7 +104,9 @@ bool leaps(const Ramp& r, const Vector& y, const Vector& next) {
 //   are short enough where friction bends: there the least is taken as it is.
 void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
   constexpr double least = 1e-14;
-  for (double reached = 0, h = 1; reached < 1; h = std::fmin(h, 1 - reached)) {
+  double reached = 0, h = 1;
+  while (reached < 1) {
+    h = std::fmin(h, 1 - reached);
     Vector next = y;
     const int order = step(r, h, held, scale, next);
     const bool released = held && order > 0 && std::fabs(turning(r, next)) > holds;

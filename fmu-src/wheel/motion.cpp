@@ -254,7 +254,7 @@ bool varies(const Polynomials& inputs) {
   std::uint64_t bits = 0;
   for (const auto& c : inputs)
     for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
-  return bits << 1 != 0;
+  return bits << 1U != 0;
 }
 
 }  // namespace
