@@ -4,6 +4,7 @@ their own start at their own step. SI units.
 
 import re
 import runpy
+import shlex
 import subprocess
 import tomllib
 from collections.abc import Iterator
@@ -27,7 +28,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (recipe,) = re.findall(r"```\n(project=.*?)```", (VEHICLES / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     folder = tmp_path_factory.mktemp("copy")
     recipe = recipe.replace("/path/to/this/checkout", str(ROOT)).replace("$project/wheel.fmu", "$wheel")
-    commands = f"wheel={build_folder() / 'wheel.fmu'}\n{recipe}"
+    commands = f"wheel={shlex.quote(str(build_folder() / 'wheel.fmu'))}\n{recipe}"
     subprocess.run(["bash", "-e", "-c", commands], cwd=folder, check=True, capture_output=True)
     return folder / "build"
 

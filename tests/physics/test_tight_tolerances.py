@@ -186,7 +186,7 @@ def test_however_tight_the_tolerance_a_wheel_that_slides_74_times_lies_flat_at_t
             for tolerance in tolerances:
                 instant, steps = falls(library, tolerance, **start, formulation=formulation)
                 within(abs(instant - exact), 5e-9, "instant at which it lies flat, s")
-                within(steps, 2e4, "number of steps")
+                within(steps, 4e4, "number of steps")  # lost in the rounding, they would go on to the work limit
 
 
 def braked_wheel(random: np.random.Generator) -> tuple[dict[str, float], Schedule]:
