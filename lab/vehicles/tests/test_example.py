@@ -14,12 +14,13 @@ from wheelfmu.fmu.paths import ROOT
 PAGES = (*(ROOT / "examples").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
 TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
-RUNS = sorted(line for line in PRINTED if "--help" not in line)
 FAILS = {
+    "suspended follow=0 exchange=held h=5ms": "Failed: a closed form does not hold.",
     "car manoeuvre=step v=22": r"Failed: f. ended the run at t = .*lifted off",
     "car mu_max=0.1": "Failed: .. ended the run at t = .*friction coefficient",
     "car manoeuvre=straight k_h=20e3 c_h=500": "Failed: a closed form does not hold.",
 }
+RUNS = sorted(line for line in PRINTED - {*FAILS} if "--help" not in line)
 
 
 @pytest.mark.parametrize("name", options.VEHICLES)

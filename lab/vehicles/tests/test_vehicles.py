@@ -33,7 +33,7 @@ def stiffer(run: Manoeuvre, factor: float) -> Manoeuvre:
 def test_closed_forms_hold_up_to_the_compliance_of_the_bushings(fmus: Fmus, run: Manoeuvre, judge: str, rest: float):
     """rest: roll squared, as after a step, does not fall as 1 / k. Nor do the lateral forces of the axles, whose wheels
     do not slip: stiffer bushings hold more of the strain that entering the bend has left."""
-    soft, stiff = (list(judges.JUDGES[judge](drive(fmus, r, 0.001).whole, r)) for r in (run, stiffer(run, 3.0)))
+    soft, stiff = (list(judges.JUDGES[judge](drive(fmus, r, 0.0005).whole, r)) for r in (run, stiffer(run, 3.0)))
     for finding, nearer in zip(soft, stiff, strict=True):
         within(off(finding), 0.04, f"{finding.what}, relative")
         if finding.what.startswith("lateral force"):
