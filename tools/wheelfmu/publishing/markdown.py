@@ -10,13 +10,15 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+import tabulate
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from tabulate import tabulate
 
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
 TEMPLATES = Path(__file__).parent / "templates"
+
+tabulate.WIDE_CHARS_MODE = False  # widths must not depend on the packages that are installed
 
 
 def said(*command: str) -> str:
@@ -61,7 +63,7 @@ def table(frame: Any) -> str:
     cells = frame.convert_dtypes().astype(object)
     texts = [[number(cell).replace("|", "\\|") for cell in row] for row in cells.where(cells.notna(), None).to_numpy()]
     sides = ("left", *["right"] * (frame.shape[1] - 1))
-    return tabulate(texts, list(frame.columns), "pipe", disable_numparse=True, colalign=sides)
+    return tabulate.tabulate(texts, list(frame.columns), "pipe", disable_numparse=True, colalign=sides)
 
 
 # A figure in prose: a number, and behind it its report and name as a comment.
