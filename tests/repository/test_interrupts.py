@@ -39,8 +39,10 @@ def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[
 
     Its exit status, what it printed, and how long it took to end."""
     printed = StringIO()
+    heeded = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # these tests may be a script's job in the background
+    how = {"env": os.environ | {MARK: mark}, "preexec_fn": heeded, "timeout": 600, "encoding": "utf-8"}
     try:
-        child = pexpect.spawn(words[0], words[1:], env=os.environ | {MARK: mark}, timeout=600, encoding="utf-8")
+        child = pexpect.spawn(words[0], words[1:], **how)
     except OSError as fault:  # as in a container without /dev/pts
         pytest.skip(f"There is no terminal for the test: {fault}.")
     child.logfile_read = printed
