@@ -39,7 +39,7 @@ def at_terminal(words: list[str], until: str, delay: float, mark: str) -> tuple[
 
     Its exit status, what it printed, and how long it took to end."""
     printed = StringIO()
-    heeded = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # these tests may be a script's job in the background
+    heeded = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a background job of a script ignores it
     how = {"env": os.environ | {MARK: mark}, "preexec_fn": heeded, "timeout": 600, "encoding": "utf-8"}
     try:
         child = pexpect.spawn(words[0], words[1:], **how)
