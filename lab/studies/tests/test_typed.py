@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from support.typed import asked, check_refused, check_taken
+from support.typed import asked, typing_tests
 
 from wheelfmu.fmu.csv_file import read_table
 from wheelfmu.fmu.values import Fault
@@ -43,15 +43,7 @@ REFUSED = {
 }
 TAKEN = ("study --vary formulation=1,multibody --set keep_contact=true --set method=bdf", "study --vary s=0:0.1:3")
 
-
-@pytest.mark.parametrize(("line", "words"), REFUSED.items())
-def test_a_fault_is_refused_in_one_sentence_with_status_2(tmp_path: Path, line: str, words: str) -> None:
-    check_refused(tmp_path, line, words)
-
-
-@pytest.mark.parametrize("line", TAKEN)
-def test_what_is_meant_is_taken(tmp_path: Path, line: str) -> None:
-    check_taken(tmp_path, line)
+test_a_fault_is_refused_in_one_sentence_with_status_2, test_what_is_meant_is_taken = typing_tests(REFUSED, TAKEN)
 
 
 GOOD = "theta_start,phi_dot_start\n75deg,-2\n1.2,0\n"

@@ -1,9 +1,6 @@
 """What a user types after ./scripts/example is taken as typed, or refused."""
 
-from pathlib import Path
-
-import pytest
-from support.typed import check_refused, check_taken
+from support.typed import typing_tests
 
 REFUSED = {
     "example car v=18,5": "the decimal mark is a point",
@@ -26,12 +23,4 @@ REFUSED = {
 }
 TAKEN = ("example car path=1 v=18.5", "example suspended exchange=held")
 
-
-@pytest.mark.parametrize(("line", "words"), REFUSED.items())
-def test_a_fault_is_refused_in_one_sentence_with_status_2(tmp_path: Path, line: str, words: str) -> None:
-    check_refused(tmp_path, line, words)
-
-
-@pytest.mark.parametrize("line", TAKEN)
-def test_what_is_meant_is_taken(tmp_path: Path, line: str) -> None:
-    check_taken(tmp_path, line)
+test_a_fault_is_refused_in_one_sentence_with_status_2, test_what_is_meant_is_taken = typing_tests(REFUSED, TAKEN)
