@@ -71,7 +71,7 @@ bool check_value(Instance& i, unsigned variable, double value) {
 }
 
 // (value set) => value taken: masters form difference quotients about a brake that is off, and set a little less.
-double taken(Instance& i, fmi2ValueReference variable, double value) {
+double taken(Instance& i, unsigned variable, double value) {
   constexpr double little = 1e-6;  // N m, or of the capacity
   if (variable != wheel::variable::M_brake || !(value < 0)) return value;
   return value >= -little * std::fmax(1, wheel::value_of(i.wheel, variable)) ? 0 : value;

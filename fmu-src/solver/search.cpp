@@ -2,18 +2,18 @@
 // step (a held wheel is released for an instant, a wheel leaves the ground for an instant). Most steps are far from any
 // event, and the dense output costs three evaluations, so Solver::look_for_events asks in three stages.
 //
-// 1. By numbers that are known anyway. A quick function comes with the rates, and Step::least_margin is the least of
-// all
-//    quick values at the stages of the step: where it is above Problem::near, none is looked at, unless one is near at
-//    an extreme of an input (Solver::comes_near). Of the other functions, each is evaluated at the end of the step; its
-//    value at the start is kept from the step before (Solver::values_), and the method leaves a state inside the step
-//    (Step::inside_at), which gives a third sample: a parabola through the three, well above zero, is enough
-//    (Solver::is_far), if no input has an extreme there.
-// 2. On the dense output, find_first_fall goes through the pieces between the extremes of inputs, in which g has a
-// simple
-//    shape, and halves them while the parabola through three samples does not show that g stays above zero
-//    (stays_above), a fixed number of times at most.
-// 3. Between a sample at or above zero and one below it, fall_through finds the instant.
+// First, by numbers that are known anyway. A quick function comes with the rates, and Step::least_margin is the least
+// of all quick values at the stages of the step: where it is above Problem::near, none is looked at, unless one is near
+// at an extreme of an input (Solver::comes_near). Each of the other functions is evaluated at the end of the step. Its
+// value at the start is kept from the step before (Solver::values_), and the method leaves a state inside the step
+// (Step::inside_at) for a third sample. If no input has an extreme there, a parabola through the three that is well
+// above zero is enough (Solver::is_far).
+//
+// Then, on the dense output, find_first_fall goes through the pieces between the extremes of inputs, in which g has a
+// simple shape. It halves them while the parabola through three samples does not show that g stays above zero
+// (stays_above), a fixed number of times at most.
+//
+// Last, between a sample at or above zero and one below it, fall_through finds the instant.
 #include "search.hpp"
 
 #include <algorithm>

@@ -44,9 +44,7 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   return -now.scene.load.brake / setup.moment_scale;
 }
 
-int spin_alone(const Setup&, const InForce& now) {
-  return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1;
-}
+int spin_alone(const InForce& now) { return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.scene.friction.kind;

@@ -21,7 +21,7 @@ struct EventRow {
   // of state and normal force, N, which come with the rates: the solver looks at it only where it comes near zero.
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all; null: it reads all.
-  int (*state)(const Setup& setup, const InForce& now) = nullptr;
+  int (*state)(const InForce& now) = nullptr;
   double rounding = 0;                         // of an observed event: a value beyond zero by less does not count
   bool exchanged = true;                       // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does

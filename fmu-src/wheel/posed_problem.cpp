@@ -48,8 +48,7 @@ template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
-  const int spin = WHEEL_OMEGA_3;
-  const double theta = y[WHEEL_THETA];
+  const double theta = y[WHEEL_THETA], spin = y[WHEEL_OMEGA_3];
   CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
   CONSTANT(double, width, 10, "omega_s over sqrt(tolerance)",
            "error of the spin in a regularized law, of second order");
@@ -57,14 +56,14 @@ void weights(void* owner, double share, const double* y, double* weights) {
   const double slow = share * setup.tolerance;
   const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
   const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
-  const double tolerance = std::fmax(slow * share_at(setup, y[spin]), least);
+  const double tolerance = std::fmax(slow * share_at(setup, spin), least);
   double scales[max_states];
-  scales_at(setup, y[spin], scales);
+  scales_at(setup, spin, scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
   const double part = width * std::sqrt(tolerance);
-  const double layer = part * setup.omega_s + tolerance * std::fabs(y[spin]);
-  weights[spin] = 1 / (std::fmin(tolerance * scales[spin], layer) + rounding * std::fabs(y[spin]));
+  const double layer = part * setup.omega_s + tolerance * std::fabs(spin);
+  weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], layer) + rounding * std::fabs(spin));
 }
 
 // (event, t, y) => its margin
@@ -127,7 +126,7 @@ solver::Problem problem_of(Wheel& wheel) {
   if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
-      const int state = row.state ? row.state(setup, now) : -1;
+      const int state = row.state ? row.state(now) : -1;
       problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, state});
     }
   return problem;

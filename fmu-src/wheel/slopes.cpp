@@ -176,9 +176,8 @@ bool take_at_instant(Wheel& w, unsigned known, Quotients& quotients) {
   Reading now(w);
   if (known == variable::M_brake) put_brake_in_use(w, now);
   keep_ground(now);
-  for (const int angle :
-       {WHEEL_EULER_PSI, WHEEL_EULER_PHI})  // a small step must not vanish in the rounding of a large one
-    now.x[angle] = wheel_less_turns(now.x[angle]);
+  if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
+    for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) now.x[angle] = wheel_less_turns(now.x[angle]);
   const int in_x = setup.exchanged ? place_in_x(known) : -1;
   double& place = in_x >= 0 ? now.x[in_x] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
   const double size = size_of(setup, now.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
