@@ -7,9 +7,8 @@ from typing import Any
 
 from tqdm import tqdm
 
-tqdm.set_lock(
-    RLock()
-)  # for threads alone: the usual one is a semaphore between processes, which Python tracks by one more
+# For threads alone: the usual lock is a semaphore between processes, which Python tracks by one more process.
+tqdm.set_lock(RLock())
 
 
 def bar(steps: Iterable[Any] | None = None, shown: bool = True, **look: Any) -> tqdm:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import shutil
 import subprocess
@@ -31,7 +30,7 @@ def build_elsewhere(first: Path, scratch: Path) -> str:
     if first.read_bytes() != second.read_bytes():
         other = shutil.copy(second, OUT / "other.fmu")
         raise SystemExit(f"Two builds in two folders differ: {first} and {other}.")
-    return hashlib.sha256(first.read_bytes()).hexdigest()[:16]
+    return folder.sum_of(first)[:16]
 
 
 def write_report(released: Path, **found: object) -> None:
@@ -51,7 +50,7 @@ def write_report(released: Path, **found: object) -> None:
 
 
 def main() -> None:
-    folder.described()
+    number, notes, draft = folder.described()
     source = folder.commit()
     with tempfile.TemporaryDirectory() as place:
         scratch = Path(place)
@@ -70,7 +69,7 @@ def main() -> None:
     write_report(released, libraries=table, twice=twice, **scenes)
     step("the site, dist/ and the folder")
     subprocess.run(["bash", "scripts/site"], check=True)
-    folder.distribute(released, source)
+    folder.distribute(released, source, number, draft=draft)
     step("done")
     print("What was run and what was only built: docs/results/platforms.md.")
-    folder.publish(released, ROOT / "build" / "site")
+    folder.publish(released, ROOT / "build" / "site", number, notes)

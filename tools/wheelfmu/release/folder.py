@@ -95,17 +95,15 @@ def page_of(place: Path, number: str, source: str, *, draft: bool = False) -> st
     return page("dist.md.j2", version=number, commit=source, files=files, lesson=lesson, draft=draft)
 
 
-def distribute(fmu: Path, source: str) -> None:
+def distribute(fmu: Path, source: str, number: str, *, draft: bool) -> None:
     """Writes dist/, the lesson too where the lab has it."""
     deliver(fmu, DIST / "wheel.fmu")
     if (ROOT / "lab" / "lesson").exists():
         subprocess.run(["bash", "scripts/page", DIST / LESSON, "--overwrite"], cwd=ROOT, check=True)
-    number, _, draft = described()
     (DIST / "README.md").write_text(page_of(DIST, number, source, draft=draft), encoding="utf-8")
 
 
-def publish(fmu: Path, site: Path) -> None:
-    number, text, _ = described()
+def publish(fmu: Path, site: Path, number: str, text: str) -> None:
     out = (ROOT / "build" / f"wheel-{number}").relative_to(Path.cwd())
     write(out, fmu, site, text)
     print("dist/ has the files for the repository. Commit them and docs/results/platforms.md as the release.")
