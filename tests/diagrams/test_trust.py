@@ -87,7 +87,7 @@ def test_another_solver_judges_and_where_it_is_the_same_engine_the_line_says_so(
     times = np.linspace(0, 2, 21)
     said = trust(wheel.motion(start, times, DEFAULT), wheel.judge(start, times)).said("A")
     assert f" of the range by {solver}" in said
-    assert ("; slides and boundary layers are solved by the same solver" in said) == shared
+    assert ("; slides and rests in a boundary layer are solved by the same solver" in said) == shared
 
 
 def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
