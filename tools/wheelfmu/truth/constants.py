@@ -244,10 +244,10 @@ def page(chosen: Sequence[Constant], table: pd.DataFrame) -> str:
 
 PAGE_TEXT = """# Constants of the solver
 
-Numbers of the solver, the unfolded motion and the run that were chosen, not derived. Each stands in `fmu-src` as a
-`CONSTANT` with its unit and its reason, from which `./scripts/constants` makes this table. It also measures the
-consequence of half and double, before each release: a build in which the environment changes one constant runs
-{count} random scenes ({kinds}), at tolerances of 1e-5 and 1e-8.
+Numbers of the equations, the solver, the unfolded motion and the run that were chosen, not derived. Each stands in
+`fmu-src` as a `CONSTANT` with its unit and its reason, from which `./scripts/constants` makes this table. It also
+measures the consequence of half and double, before each release: a build in which the environment changes one constant
+runs {count} random scenes ({kinds}), at tolerances of 1e-5 and 1e-8.
 
 - *error*: the largest distance from a run at a tolerance of 1e-12, over the tolerance and over the growth of a small
   change of the start. It stays below {error:g}.
