@@ -40,7 +40,7 @@ def test_N_answers_a_moment_about_the_axle_by_alpha(formulation: eq.Formulation,
     beyond((np.abs((driven[:, 2] - free) / moment + alpha) / size).max(), 0.05, "answer of N off -alpha, relative")
 
 
-def test_N_under_rolling_friction_and_brake_follows_from_that_of_the_free_wheel(formulation: eq.Formulation) -> None:
+def test_N_under_rolling_resistance_and_brake_follows_from_that_of_the_free_wheel(formulation: eq.Formulation) -> None:
     """N = (N_free - alpha kappa M_b)/(1 + alpha kappa s), tau = -(s N + M_b) kappa."""
     scenes, motions = draw(71, eq.ROLLING, symmetric=False, rows=ROWS)
     found = dynamics(formulation, scenes, motions)
