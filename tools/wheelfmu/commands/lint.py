@@ -13,7 +13,7 @@ from wheelfmu.fmu.values import Fault
 NEEDS = ("check",)
 OPTIONS = {
     "--fix": {"action": "store_true", "help": "format the files and mend what ruff can, instead of checking"},
-    "files": {"nargs": "*", "metavar": "FILE", "help": "check only these files, or a pattern of git, without types and imports"},
+    "files": {"nargs": "*", "metavar": "FILE", "help": "check these or a pattern of git, without types, imports"},
 }
 GERSEMI = ("gersemi", "--line-length", "120", "--indent", "2")
 RUFF = ("ruff", "check", "-q", "--no-cache")  # its cache misses a folder that becomes a package or ceases to be one

@@ -13,9 +13,9 @@
   ./scripts/run backspin                    a preset case, a hoop that slides, rolls and comes back
   ./scripts/run s=0.01 error=methods        a diagram of error against computing time for every method
 
-The command installs what is missing, builds wheel.fmu and leaves it here. It simulates both scenes with the fmpy command
-line and writes into results/ the diagrams, the tables free.csv and friction.csv, and wheel.html, a 3D page of the
-motion. It estimates the error of both runs with another solver (docs/recipes.md).
+The command installs what is missing, builds wheel.fmu and leaves it here. It simulates both scenes with the fmpy
+command line and writes into results/ the diagrams, the tables free.csv and friction.csv, and wheel.html, a 3D page of
+the motion. It estimates the error of both runs with another solver (docs/recipes.md).
 
 Any parameter or input of docs/variables.md can be given, each once. An input keeps its value for the whole run, and
 docs/in_your_tool.md shows one that varies. If no body within the wheel's outline has the given moments of inertia, a
