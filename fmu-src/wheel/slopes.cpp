@@ -217,8 +217,7 @@ void take_along_motion(Wheel& w, Quotients& quotients) {
   const WheelFormulation& formulation = formulation_of(setup, start.scene);
   const Rates rates = rates_of(setup, start.scene, start.y);
   const Inputs& inputs = w.run.in_force.inputs;
-  const bool goes_on = setup.steered() && w.demand.news != News::set;  // as the reading
-  WheelLoad rate = goes_on ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
+  WheelLoad rate = acts_on(w) ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
