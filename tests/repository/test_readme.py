@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib.metadata import distributions
 from pathlib import Path
 
 import numpy as np
@@ -40,8 +41,10 @@ def root(tmp_path: Path) -> Path:
 
 
 def run(*command: str | Path, folder: Path) -> str:
-    """What the command prints. The environment is that of an activated .venv, without a screen."""
-    environment = os.environ | {"MPLBACKEND": "Agg", "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    """What the command prints. The environment is that of an activated .venv, without a screen; what a user's pip
+    installs is in it, and stays alone: FMPy's own CMake would build all anew."""
+    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    environment |= {"MPLBACKEND": "Agg", "PIP_NO_DEPS": "1"}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=1800)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -91,12 +94,14 @@ def test_the_readmes_errors_are_those_that_the_glossary_defines(library, scene):
 def test_the_readmes_commands_for_a_downloaded_file_give_friction_on_any_system(root, references):
     """Those for PowerShell, translated word by word, give the same file."""
     (commands,), (windows,) = blocks("bash"), blocks("powershell")
+    installed = {one.name for one in distributions()}
     bash(commands, root)
     file, found = root / "friction.csv", []
     for words in ("", windows.replace("py -m", "python -m").replace("\\", "/")):
         bash(words, root)
         found.append(file.read_bytes())
     assert found[0] == found[1] and len(windows.splitlines()) == len(commands.splitlines()) == 2
+    assert {one.name for one in distributions()} == installed
     error = np.abs(table(file)["X_O"][::10] - references["friction"]["X_O"]).max()
     within(error, 3e-8, "X_O off the reference, m")
     beyond(np.abs(table(file)["X_O"][::10] - references["free"]["X_O"]).max(), 0.1, "X_O of the free wheel, m")
