@@ -196,6 +196,7 @@ export class Lesson {
   pick(fate) {
     this.guess.picked = fate;
     this.page.player.play();
+    $('#play').focus();  // the answers, of which one had the focus, are gone
   }
 
   /** The motion plays, and answers what the step asks; then it rests, so that the answer can be read. */
