@@ -1,39 +1,43 @@
-"""Builds, runs and draws a vehicle made of FMUs, or the wheel for a control engineer. Prints a verdict;
-results/examples/ has all of it. Exit status 1: the manoeuvre failed."""
+"""Drives the car of examples/vehicles through a manoeuvre, or runs the wheel for a control engineer: NAME is one of"""
 
 import sys
+from argparse import Namespace
 
+from lab.vehicles.manoeuvres import EXAMPLES, MANOEUVRES
 from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault, suggestion
+
+CONTROL = ROOT / "lab" / "vehicles" / "control.py"
+# Each example that is here.
+NAMES = {name: f"the car, {run.title}" for name, run in MANOEUVRES.items() if (EXAMPLES / "package.py").exists()}
+NAMES |= {"control": "the wheel: linearization, regulator, optimal control"} if CONTROL.exists() else {}
+__doc__ = "\n".join([__doc__, "", *(f"  {name:10s}{about}" for name, about in NAMES.items())])
 
 
-def usage(words: list[str]) -> str:
-    from lab.vehicles import options
-
-    return options.usage(*words)
-
-
-def reads(words: list[str]) -> list[str]:
-    from lab.vehicles import options
-
-    options.asked(*words)
-    return words
+def example(name: str) -> str:
+    """A name; Fault if there is none such."""
+    if name not in NAMES:
+        there = f"there are {', '.join(NAMES)}." if NAMES else "examples/vehicles and control.py are not here."
+        raise Fault(f'there is no example "{name}"; {there}{suggestion(name, dict.fromkeys(NAMES, ""))}')
+    return name
 
 
-def needs(given: list[str]) -> list[str]:
-    return ["vehicles"] * (given[0] == "control")
+OPTIONS = {"name": {"metavar": "NAME", "type": example}}
 
 
-def main(given: list[str]) -> int:
+def needs(given: Namespace) -> list[str]:
+    return ["vehicles"] * (given.name == "control")
+
+
+def main(given: Namespace) -> int:
     build("release")
     with alone(ROOT / "results" / "examples"):
-        if given[0] == "control":
-            program = ROOT / "lab" / "vehicles" / "control.py"
-            return processes.status(
-                sys.executable, "-P", program, "build/release/wheel.fmu", "results/examples/control"
-            )
+        if given.name == "control":
+            words = CONTROL, "build/release/wheel.fmu", "results/examples/control"
+            return processes.status(sys.executable, "-P", *words)
         from lab.vehicles.example import main as run
 
-        return run(given)
+        return run(given.name)
