@@ -245,8 +245,8 @@ The solver, the unfolded motion and the run contain numbers that were chosen, no
 
 - *error* is the largest distance from a run at a tolerance of 1e-12, divided by the tolerance and by the growth of a
   small change of the start. It stays below {error:g}.
-- *work* is the number of evaluations of rates and watched functions, divided by that of the unchanged constant. It stays
-  below {work:g}.
+- *work* is the number of evaluations of rates and watched functions, divided by that of the unchanged constant. It
+  stays below {work:g}.
 
 The kind of scenes in which a measure grows most is in brackets. A dash means that nothing grows by more than 1 %.
 
