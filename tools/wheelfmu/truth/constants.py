@@ -244,10 +244,10 @@ def page(chosen: Sequence[Constant], table: pd.DataFrame) -> str:
 
 PAGE_TEXT = """# Constants of the solver
 
-The equations, the solver, the unfolded motion and the run contain numbers that were chosen, not derived. Each is a `CONSTANT` in
-`fmu-src` with its unit and its reason. How much do the results depend on these choices? Before each release
-`./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds}) at tolerances of
-1e-5 and 1e-8, and writes this table.
+The equations, the solver, the unfolded motion and the run contain numbers that were chosen, not derived. Each is a
+`CONSTANT` in `fmu-src` with its unit and its reason. How much do the results depend on these choices?
+Before each release `./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds})
+at tolerances of 1e-5 and 1e-8, and writes this table.
 
 - *error* is the largest distance from a run at a tolerance of 1e-12, divided by the tolerance and by the growth of a
   small change of the start. It stays below {error:g}.
