@@ -25,10 +25,11 @@ double power_of_two_below(double x) {
 void set_scales(Setup& setup, const WheelKinematics& start) {
   CONSTANT(double, longest, 0.6, "time scales",
            "at an unstable rest the error estimate is zero: steps would grow without limit");
+  CONSTANT(double, least_gravity, 1e-30, "of length times rate squared", "a smaller one has no part in the motion");
   const WheelParameters& wheel = setup.scene.wheel;
-  const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
+  const double gravity = wheel.g_n, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
-  const bool matters = gravity > 1e-30 * length * rate * rate;
+  const bool matters = gravity > least_gravity * length * rate * rate;
   setup.length = length;
   setup.time_scale = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
   setup.longest_step = longest * setup.time_scale;
@@ -128,7 +129,7 @@ Setup setup_of(const Demand& demand) {
   setup.scene.guided = v[guided] != 0;
   choose_equations(setup, demand);
   // clang-format off
-  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
+  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};
   // clang-format on
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));

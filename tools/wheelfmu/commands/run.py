@@ -3,7 +3,7 @@
   ./scripts/run                             the paper's two scenes, without and with rolling resistance (s = 0.03 m)
   ./scripts/run v=18km/h                    a vehicle's wheel that starts upright at the origin, along X
   ./scripts/run s=0.01 theta_start=60deg    other values in both scenes, where the first keeps s = 0
-  ./scripts/run body=torus m=12kg           a homogeneous body, whose moments of inertia follow from m, r_0 and r
+  ./scripts/run m=12kg J_x=0.56 J_y=0.56 J_z=1.1   a lighter wheel, with its moments of inertia in kg m2
   ./scripts/run slope=12% r_0=30cm          units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
   ./scripts/run M_brake=20 stop_time=20     an input that is constant over the run, and a longer run
   ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road, on which the wheel slides
