@@ -245,9 +245,9 @@ def page(chosen: Sequence[Constant], table: pd.DataFrame) -> str:
 PAGE_TEXT = """# Constants of the solver
 
 The equations, the solver, the unfolded motion and the run contain numbers that were chosen, not derived. Each is a
-`CONSTANT` in `fmu-src` with its unit and its reason. How much do the results depend on these choices?
-Before each release `./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds})
-at tolerances of 1e-5 and 1e-8, and writes this table.
+`CONSTANT` in `fmu-src` with its unit and its reason. How much do the results depend on these choices? Before each
+release `./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds}) at
+tolerances of 1e-5 and 1e-8, and writes this table.
 
 - *error* is the largest distance from a run at a tolerance of 1e-12, divided by the tolerance and by the growth of a
   small change of the start. It stays below {error:g}.
@@ -270,8 +270,8 @@ The scenes do not cover the constants of model exchange (`exchange`), of differe
 
 These numbers are not in the table:
 
-- coefficients of the methods, and the published bounds within which a step grows or shrinks;
-- multiples of the rounding of a number, and the limits of what a caller may set;
+- coefficients of the methods, and the published bounds within which a step grows or shrinks
+- multiples of the rounding of a number, and the limits of a caller's values
 - in the equations in C, which read no environment, `WHEEL_LEAST_ROOM` and the parts of a circle in which
-  `wheel_slip_direction` looks for a slip: their tests are in `tests/equations/test_rare_geometry.py`.
+  `wheel_slip_direction` looks for a slip, which `tests/equations/test_rare_geometry.py` tests
 """
