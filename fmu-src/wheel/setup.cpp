@@ -97,7 +97,7 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   require(!exchanged || v[formulation] != int{multibody_formulation},
           "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
-          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; by "
+          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; in "
           "co-simulation psi_dot_guide and theta_dot_guide turn it.",
           psi_dot_start, theta_dot_start);
   require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
@@ -107,8 +107,8 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
           mu_slide);
   sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchanged),
-                          "psi_dot_guide, theta_dot_guide = %s, %s rad/s: only the carrier of a guided wheel turns, by "
-                          "co-simulation; else they and their derivatives must be 0.",
+                          "psi_dot_guide, theta_dot_guide = %s, %s rad/s: these inputs need guided = true "
+                          "and co-simulation; otherwise they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
   return sound;
 }

@@ -22,7 +22,7 @@ INERTIA = ("J_x", "J_y", "J_z")
 
 
 def first(random: Random, level: bool) -> tuple[Table, Table]:
-    """A scene and a motion; `level`: as the FMU can start it, without rolling friction on a level road."""
+    """A scene and a motion; `level`: as the FMU can start it, without rolling resistance on a level road."""
     scene, motion = random_scenes(random, eq.FRICTIONLESS if level else None, False, 1), random_motions(random, 1)
     scene["contact"], scene["mu_slide"] = 1, random.uniform(0.5, 1.5)
     if level:
