@@ -1,6 +1,7 @@
 """The car of examples/vehicles: its FMUs, built; a manoeuvre, driven by the master; the table of the run. SI units."""
 
 import sys
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +17,8 @@ Table = dict[str, np.ndarray]
 BUILT = ROOT / "build" / "examples"
 OF_A_WHEEL = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_1", "lambda_2", "lambda_3", "lambda_y")
 COMPARED = ("X", "Y", "psi", "roll", "pitch", "v", "omega")
-COLUMNS = {name: ("chassis", name) for name in COMPARED}  # of the table: component, variable
-COLUMNS |= {name: ("driver", name) for name in ("delta", "M_drive", "M_brake")}
-COLUMNS |= {f"{wheel}.{name}": (wheel, name) for wheel in WHEELS for name in OF_A_WHEEL}
+RECORD = {"chassis": COMPARED, "driver": ("delta", "M_drive", "M_brake"), **dict.fromkeys(WHEELS, OF_A_WHEEL)}
+COLUMNS = [f"{of}.{name}" if of in WHEELS else name for of, names in RECORD.items() for name in names]
 LEAST = 0.01  # of a range, where errors are relative to it
 
 
@@ -45,7 +45,7 @@ def drive(
     with loaded(*components):
         master = Master(components, of["connections"])
         times = master.steps(run.stop, h, exchange, max(1, round((grid or 2 * h) / h)), progress)
-        rows = [[t, *master.read(COLUMNS.values())] for t in times]
+        rows = [[t, *chain.from_iterable(master.read(*of) for of in RECORD.items())] for t in times]
     return dict(zip(("time", *COLUMNS), np.transpose(rows), strict=True))
 
 
