@@ -118,7 +118,7 @@ def test_a_wrong_command_would_be_noticed() -> None:
 
 
 SCRIPTS = sorted(MODULES)
-WRONG = {"build": "faster", "example": "lanes", "fuzz": "soon", "lint": "--fixx", "page": "--output"}
+WRONG = {"build": "faster", "example": "cars", "fuzz": "soon", "lint": "--fixx", "page": "--output"}
 WRONG |= {"report": "sped", "run": "m=-5", "setup": "tests", "study": "--varies", "test": "slow", "view": "no_file.csv"}
 
 
