@@ -25,9 +25,9 @@ class Solver {
   Solver& operator=(const Solver&) = delete;
 
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
-  // ones go on counting (`restarts` counts all but the first). Runge-Kutta keeps the step size that it wanted last. Where
-  // a steep state rests, collocation takes over from it, until a start without one. False where SUNDIALS could not be
-  // set up: failure().
+  // ones go on counting (`restarts` counts all but the first). Runge-Kutta keeps the step size that it wanted last.
+  // Where a steep state rests, collocation takes over from it, until a start without one. False where SUNDIALS could
+  // not be set up: failure().
   [[nodiscard]] bool start(const Problem& problem, Method method, double t, const double* y);
   [[nodiscard]] bool restart(const Problem& problem, Method method, double t, const double* y);
 
