@@ -18,7 +18,7 @@ from wheelfmu.truth import sliding
 from wheelfmu.truth.errors import by_instant
 from wheelfmu.truth.measure import transitions
 from wheelfmu.truth.scenes import SCENES, Scene
-from wheelfmu.truth.trust import DEFAULT, ROUNDING, Motion, Wheel, trust
+from wheelfmu.truth.trust import DEFAULT, ROUNDING, TIGHTEST, Motion, Wheel, trust
 
 WORDS = {"regularized": "2", "True": "true", "False": "false", "multibody": "3", "adams": "2", "bdf": "3"}
 NAMES = (
@@ -100,9 +100,8 @@ def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel:
     estimated, true = (np.abs(run.rows[:, 2] - spin).max() for spin in (truth.rows[:, 2], exact))
     beyond(true, ROUNDING * np.ptp(exact), "true error, rad/s")
     off = abs(estimated - true) / np.ptp(exact)
-    print("DBG", off / TIGHTEST, true / np.ptp(exact) / TIGHTEST)
-    within(off / TIGHTEST, 10, "estimated error off the true one, tolerances of the run that judges")
-    beyond(true / np.ptp(exact) / TIGHTEST, 10, "true error, of these tolerances")
+    within(off / TIGHTEST, 10, "estimated error off the true one, in tolerances of the judge")
+    beyond(true / np.ptp(exact) / TIGHTEST, 10, "true error, in these tolerances")
 
 
 def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
