@@ -144,30 +144,30 @@ struct RungeKutta::Work {
     problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
     double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
-    return problem.steep ? step_through_bend(stop, &liked) : accept_step(stop, problem.longest_step, &liked);
+    const double in_bend = problem.steep ? longest_in_bend() : INFINITY;
+    const char* failure = accept_step(stop, std::fmin(in_bend, problem.longest_step), &liked);
+    engine.rests_ = problem.steep && !failure && rests_after(in_bend);
+    return failure;
   }
 
-  // (decay of the steep state at zero, 1/s) => longest step through its bend, s. The law bends as tanh, whose poles at
-  // i pi / 2 widths end the series of the motion: the error estimate is blind to them.
-  double longest_in_bend(double decay) const {
-    const Settling& steep = *problem.steep;
-    const double away = std::fmax(0, std::fabs(step.y_start[steep.state]) - bend * steep.width);
-    const double speed = std::fabs(engine.f_[0][steep.state]) + decay * steep.width;
-    return (widths_per_step * steep.width + away) / speed;
-  }
-
-  // Through the bend of the steep state no step is too long for the estimate of its error.
-  const char* step_through_bend(double stop, double* liked) {
+  // Longest step through the bend of the steep state, s. The law bends as tanh, whose poles at i pi / 2 widths end the
+  // series of the motion: the error estimate is blind to them.
+  [[gnu::noinline]] double longest_in_bend() const {
     const Settling& steep = *problem.steep;
     const double zero = 0;
     double slope = 0, others[max_states] = {};
     steep.slopes(problem.owner, step.start, step.y_start, {&zero, 1}, &slope, others);
-    const double longest = longest_in_bend(-slope);
-    const char* failure = accept_step(stop, std::fmin(longest, problem.longest_step), liked);
+    const double away = std::fmax(0, std::fabs(step.y_start[steep.state]) - bend * steep.width);
+    const double speed = std::fabs(engine.f_[0][steep.state]) - slope * steep.width;
+    return (widths_per_step * steep.width + away) / speed;
+  }
+
+  // Whether the steep state rests after a step that `longest` limited.
+  bool rests_after(double longest) const {
+    const Settling& steep = *problem.steep;
     const double change = std::fabs(step.y_end[steep.state] - step.y_start[steep.state]);
-    engine.rests_ = !failure && h >= longest && change < still * steep.width &&
-                    std::fmin(*liked, problem.longest_step) > far_longer * h;
-    return failure;
+    const double wanted = std::fmin(engine.liked_, problem.longest_step);
+    return h >= longest && change < still * steep.width && wanted > far_longer * h;
   }
 
   // Tries smaller and smaller steps until
