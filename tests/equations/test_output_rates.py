@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from support.bounds import EPSILON, beyond, within
+from support.bounds import beyond, within
 
 from wheelfmu.fmu import equations as eq
 from wheelfmu.fmu.driver import OK, FMU2Wheel
