@@ -160,8 +160,8 @@ Outcome step_to(Wheel& w, double t) {
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       w.failure =
-          "one call may take no more internal steps; use shorter communication steps; a coupling may diverge, or a "
-          "force, a brake or a regularized law be extreme";
+          "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
+          "extreme, or the communication step is too long";
       return Outcome::failed;
     }
     const long long before = solver.counters().rhs;

@@ -11,10 +11,8 @@ namespace wheel {
 
 struct Reading;
 
-// How the wheel moves, and what acts on it at the ground, fixed axes, N, and about the axle; or the rates of these by
-// some quantity.
+// What acts on the wheel at the ground, fixed axes, N, and about the axle; or the rates of these by some quantity.
 struct Acting {
-  WheelKinematics motion;
   double lambda[3];
   WheelAxleMoment axle;
 };
@@ -51,7 +49,6 @@ struct Row {
 };
 
 const Row& row_of(unsigned variable);
-// (reading) => how the wheel moves, and what acts on it
 Acting acting_of(Reading& now);
 
 // A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the

@@ -79,6 +79,12 @@ inline bool is_idle(const Wheel& wheel, unsigned variable) {
   return is_guide_rate(variable) && is_running(wheel.run.phase) && !wheel.setup.steered();
 }
 
+// Whether what is in force acts on from the instant reached: nothing was set since the last step. An input that varied
+// in it stays where it arrived, but the carrier still turns as in the step.
+inline bool acts_on(const Wheel& wheel) {
+  return wheel.demand.news == News::none || (wheel.demand.news == News::stays && wheel.setup.steered());
+}
+
 // (run.t) => state there, in run.y
 const double* state_now(Wheel& wheel);
 

@@ -61,8 +61,8 @@ class Rows:
         """One instance, in the state of each row in turn."""
         w = make()
         for scene, motion, load_dot in zip(self.scenes, self.motions, self.load_dot, strict=True):
-            names = ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")
-            values = {name: float(scene["wheel"][name]) for name in names}
+            names = ("m", "r_0", "r", "J_x", "J_y", "J_z", "s")
+            values = {name: float(scene["wheel"][name]) for name in names} | {"g": float(scene["wheel"]["g_n"])}
             values |= {f"{name}_start": float(motion[name]) for name in motion.dtype.names if "slip" not in name}
             if scene["friction"]["kind"] == eq.REGULARIZED:
                 changed |= {"friction_law": 2, "omega_s": float(scene["friction"]["omega_s"])}

@@ -17,7 +17,7 @@ from wheelfmu.truth.sliding import UPRIGHT
 
 R, J = PAPER.r_0 + PAPER.r, rolling_inertia(PAPER)
 S, CAPACITY, RATE = 0.02, 100.0, 500.0  # m, N m, N/s
-ROLLING = S * PAPER.m * PAPER.g  # N m, capacity of the rolling friction
+ROLLING = S * PAPER.m * PAPER.g  # N m, capacity of the rolling resistance
 RELEASE = (CAPACITY + ROLLING) / (R * RATE)  # s
 SHARE = CAPACITY / (CAPACITY + ROLLING)
 FADING, PUSHED = {"M_brake": (CAPACITY, -10.0)}, {"M_brake": (CAPACITY,), "F_X": (0.0, RATE)}
@@ -46,7 +46,7 @@ SCENES["lets go"] = (
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_brake_and_rolling_friction_share_the_moment_in_proportion_to_their_capacities(library: Library, scene) -> None:
+def test_brake_and_rolling_resistance_share_the_moment_by_their_capacities(library: Library, scene) -> None:
     start, inputs, times, *truth = scene
 
     def errors(brake: float) -> list[float]:

@@ -83,7 +83,7 @@ const PRESSED = 'button, select, input[type=checkbox], input[type=radio]';  // b
 const MOVED = 'input, select, canvas';  // by arrow keys; of the canvas, the scene turns
 
 /** The page's keys: those here, and for the rest the button that has the key as its shortcut. Fields keep their own. */
-export function setUpKeys({player, stage, plots}) {
+export function setUpKeys({player, stage}) {
   const seek = (by) => ({shiftKey}) => player.seek(player.t + (shiftKey ? 10 : 1) * by);
   const keys = {
     'arrowleft': seek(-0.05),
@@ -93,7 +93,6 @@ export function setUpKeys({player, stage, plots}) {
     '+': () => player.shift(1),
     '-': () => player.shift(-1),
     'r': () => stage.controls.reset(),
-    'd': () => plots.next(),
   };
   addEventListener('keydown', (event) => {
     const key = event.key === ' ' ? 'space' : event.key.toLowerCase();

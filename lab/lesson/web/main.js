@@ -86,7 +86,7 @@ class Page {
   dress() {
     this.stage.dress();
     this.stage.zoom(this.size);
-    this.wheels.forEach((wheel, i) => (wheel.colour = colour(`--wheel-${i % 6}`)));
+    this.wheels.forEach((wheel, i) => (wheel.colour = colour(`--wheel-${wheel.hue ?? i % 6}`)));
     this.stage.put(this.wheels.map((wheel) => new WheelModel(wheel, this.size)));
     this.choose(this.choice);
   }
