@@ -143,6 +143,15 @@ def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library
     beyond(max(others), bound, "error of a wide law / range")
 
 
+def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
+    def evaluations(omega_s: float, tolerance: float = 1e-8) -> int:
+        law = {"friction_law": "regularized", "omega_s": omega_s, "tolerance": tolerance}
+        return wheel().start(**FRICTION, **law).to(10.0).get("n_rhs")[0]
+
+    within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
+    beyond(evaluations(1e-9, 1e-11) / evaluations(1e-5), 1.5, "growth with the tolerance too")
+
+
 def steps_to_and_fro(wheel, **law: str | float) -> int:
     """Of an upright wheel that a moment turns back twenty times."""
     w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
