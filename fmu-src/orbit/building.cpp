@@ -74,12 +74,12 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-bool Orbit::enter(const Motion& motion, bool known, solver::Solver& solver) {
+bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
   if (!known || result_ == Result::refused) build(motion, solver);
   return result_ != Result::refused && begin(motion);
 }
 
-void Orbit::build(const Motion& motion, solver::Solver& solver) {
+void Orbit::build(const FreeMotion& motion, solver::Solver& solver) {
   const double tolerance = motion.tolerance;
   solver::Problem problem = motion.problem;
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
@@ -93,7 +93,7 @@ void Orbit::build(const Motion& motion, solver::Solver& solver) {
   counters_ = solver.counters();
 }
 
-bool Orbit::begin(const Motion& motion) {
+bool Orbit::begin(const FreeMotion& motion) {
   const double* y0 = motion.y0;
   latest_half_ = {};
   start_.psi_sum = y0[WHEEL_PSI];
@@ -113,7 +113,7 @@ bool Orbit::begin(const Motion& motion) {
 //   the swing between both is no larger than errors: refused;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0,
+Orbit::Result Orbit::follow(const solver::Problem& problem, FreeMotion::OnEvent on_event, const double* y0,
                             solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
@@ -142,7 +142,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_e
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver) {
+solver::Outcome Orbit::step(const solver::Problem& problem, FreeMotion::OnEvent on_event, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;

@@ -99,7 +99,7 @@ bool enter_orbit(Wheel& w) {
   const Shape asked = shape_of(w.demand);
   const bool known = w.orbit_shape == asked;
   const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-  const orbit::Motion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
+  const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
   const bool entered = orbit.enter(motion, known, w.solver);
   w.run.in_force = at_start;
   w.orbit_shape = asked;

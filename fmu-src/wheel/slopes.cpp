@@ -1,6 +1,6 @@
 // Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
-// rounding; a variable that is not linear in the forces follows from those of the forces (Row::by_force), and a rate
-// that another variable has is read there (Row::read_rate).
+// rounding; a variable that is not linear in the forces follows from those of the forces and of the motion
+// (Row::by_force), and a rate that another variable has is read there (Row::read_rate).
 #include "slopes.hpp"
 
 #include <algorithm>

@@ -171,7 +171,7 @@ const Row& row_of(unsigned variable) { return rows[variable]; }
 Acting acting_of(Reading& now) {
   const WheelDynamics& d = now.dynamics();
   const WheelAxleMoment axle = {d.tau, d.lambda[2], now.scene.wheel.s, now.scene.load.brake};
-  return {{d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
+  return {now.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
 }
 
 Limit limit_passed(unsigned v, double value) {

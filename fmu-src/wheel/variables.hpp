@@ -11,8 +11,10 @@ namespace wheel {
 
 struct Reading;
 
-// What acts on the wheel at the ground, fixed axes, N, and about the axle; or the rates of these by some quantity.
+// How the wheel moves, and what acts on it at the ground, fixed axes, N, and about the axle; or the rates of these by
+// some quantity.
 struct Acting {
+  WheelKinematics motion;
   double lambda[3];
   WheelAxleMoment axle;
 };
@@ -49,6 +51,7 @@ struct Row {
 };
 
 const Row& row_of(unsigned variable);
+// (reading) => how the wheel moves, and what acts on it
 Acting acting_of(Reading& now);
 
 // A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the
