@@ -11,7 +11,6 @@ import sys
 import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.sax.saxutils import quoteattr
 from zipfile import ZIP_DEFLATED, ZipFile
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>'
@@ -58,40 +57,34 @@ def parameter_set(values):
     return "\n".join([*rows, "  </ssv:Parameters>", "</ssv:ParameterSet>", ""])
 
 
-def component(name, fmu, description, connected, units):
+def component(name, fmu, description, connected):
     """Of the structure: all outputs, the inputs that are connected, and the parameter set."""
     rows = [f'      <ssd:Component name="{name}" source="resources/{fmu}.fmu" type="application/x-fmu-sharedlibrary">']
     rows.append("        <ssd:Connectors>")
     for variable in description.iter("ScalarVariable"):
-        of, kind, unit = variable.get("name"), variable.get("causality"), variable[0].get("unit")
+        of, kind = variable.get("name"), variable.get("causality")
         if variable[0].tag == "Real" and (kind == "output" or (name, of) in connected):
-            real = f"<ssc:Real unit={quoteattr(unit)}/>" if unit in units else "<ssc:Real/>"
-            rows.append(f'          <ssd:Connector name="{of}" kind="{kind}">{real}</ssd:Connector>')
+            rows.append(f'          <ssd:Connector name="{of}" kind="{kind}"><ssc:Real/></ssd:Connector>')
     source = f'source="resources/{name}.ssv" type="application/x-ssp-parameter-set"'
     binding = f"<ssd:ParameterBindings><ssd:ParameterBinding {source}/></ssd:ParameterBindings>"
     return [*rows, "        </ssd:Connectors>", f"        {binding}", "      </ssd:Component>"]
 
 
 def structure(name, system, descriptions):
-    """SystemStructure.ssd, with the units that an FMU defines."""
+    """SystemStructure.ssd."""
     connected = {end for pair in system["connections"] for end in pair}
-    bases = [(unit.get("name"), unit.find("BaseUnit")) for of in descriptions.values() for unit in of.iter("Unit")]
-    units = {unit: base.attrib for unit, base in bases if base is not None}
     spaces = f'xmlns:ssd="{SSP}Description" xmlns:ssc="{SSP}Common" xmlns:oms="{OMS}"'
     rows = [HEAD, f'<ssd:SystemStructureDescription version="1.0" name="{name}" {spaces}>']
     rows += [f'  <ssd:System name="{name}">', "    <ssd:Elements>"]
     for part, fmu in system["fmus"].items():
-        rows += component(part, fmu, descriptions[fmu], connected, units)
+        rows += component(part, fmu, descriptions[fmu], connected)
     rows += ["    </ssd:Elements>", "    <ssd:Connections>"]
     for source, sink in system["connections"]:
         ends = 'startElement="{}" startConnector="{}" endElement="{}" endConnector="{}"'.format(*source, *sink)
         rows.append(f"      <ssd:Connection {ends}/>")
-    rows += ["    </ssd:Connections>", OMSIMULATOR.format(step=system["step"]), "  </ssd:System>", "  <ssd:Units>"]
-    for unit, powers in units.items():
-        base = "".join(f' {key}="{powers[key]}"' for key in ("kg", "m", "s", "rad") if key in powers)
-        rows.append(f"    <ssc:Unit name={quoteattr(unit)}><ssc:BaseUnit{base}/></ssc:Unit>")
+    rows += ["    </ssd:Connections>", OMSIMULATOR.format(step=system["step"]), "  </ssd:System>"]
     end = f'  <ssd:DefaultExperiment startTime="0" stopTime="{system["stop"]}"/>'
-    return "\n".join([*rows, "  </ssd:Units>", end, "</ssd:SystemStructureDescription>", ""])
+    return "\n".join([*rows, end, "</ssd:SystemStructureDescription>", ""])
 
 
 def write(package, system, files):

@@ -1,14 +1,10 @@
 """Runs an SSP package in a tool: python run_package.py TOOL PACKAGE STEP STOP COMPONENT.VARIABLE...
 
-TOOL is fmpy, ecos or libcosim, of the interpreter's packages fmpy, ecospy, libcosimpy, or OMSimulator, on the path.
+TOOL is fmpy, ecos or libcosim, of the interpreter's packages fmpy, ecospy and libcosimpy.
 Prints the variables' values at the end, one a line.
 """
 
-import csv
-import subprocess
 import sys
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 
 def by_fmpy(package: str, step: float, stop: float, names: list[str]) -> list[float]:
@@ -50,18 +46,6 @@ def by_libcosim(package: str, step: float, stop: float, names: list[str]) -> lis
         reference = next(v.reference for v in execution.slave_variables(index) if v.name.decode() == variable)
         values += observer.last_real_values(index, [reference])
     return values
-
-
-def by_omsimulator(package: str, step: float, stop: float, names: list[str]) -> list[float]:
-    """In a separate folder, where it unpacks. The package fixes the step; here it spaces the rows of the result."""
-    options = ["--mode=cs", f"--intervals={round(stop / step)}", f"--stopTime={stop}", "--resultFile=result.csv"]
-    with TemporaryDirectory() as folder:
-        command, result = ["OMSimulator", *options, str(Path(package).resolve())], Path(folder) / "result.csv"
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-        if done.returncode or not result.exists():
-            raise RuntimeError(f"OMSimulator printed:\n{done.stdout}{done.stderr}")
-        *_, last = csv.DictReader(result.read_text().splitlines(), skipinitialspace=True)
-    return [float(next(x for title, x in last.items() if title.endswith(f".{name}"))) for name in names]
 
 
 if __name__ == "__main__":

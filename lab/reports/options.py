@@ -14,11 +14,11 @@ DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its dat
 --publish into docs/results. Without NAME it lists the reports and their parts. The exit status is 1 if a figure exceeds
 its bound (lab/reports/requirements.csv)."""
 LAB = ROOT / "lab"
-OF = {"vehicles": "vehicles"}  # a folder of the lab that may be absent
+OF = {"vehicles": ("lab/vehicles", "examples/vehicles")}  # folders that may be absent
 NAMES = tuple(
     name
     for name in ("accuracy", "stability", "speed", "vehicles", "others", "validation", "physics")
-    if (LAB / OF.get(name, "")).exists()
+    if all((ROOT / folder).exists() for folder in OF.get(name, ()))
 )
 # Modules with further parts of a report, each with the folder of the lab that it measures.
 FURTHER = {"speed": ("studies",) * (LAB / "studies").exists()}

@@ -117,7 +117,7 @@ class Report:
     @cached_property
     def fmus(self) -> dict[str, Path]:
         """Every FMU of the examples, built."""
-        from lab.vehicles.vehicle import build_all
+        from lab.vehicles.car import build_all
 
         return build_all()
 

@@ -1,4 +1,4 @@
-"""Vehicles of examples/: the bicycle, the quarter car and the car, as tables and pictures."""
+"""Vehicles of examples/: the bicycle and the car, as tables and pictures."""
 
 from __future__ import annotations
 
@@ -11,24 +11,20 @@ import numpy as np
 import pandas as pd
 
 from lab.vehicles import judges, planar
+from lab.vehicles.car import drive, error
 from lab.vehicles.example import draw
-from lab.vehicles.options import EXCHANGES, Manoeuvre, manoeuvres
-from lab.vehicles.vehicle import STEPS, apart, drive, error
+from lab.vehicles.manoeuvres import MANOEUVRES, WHEELS, system
+from lab.vehicles.master import ORDERS
+from wheelfmu.diagrams import style
 from wheelfmu.fmu.paths import ROOT, build_folder
 
 from .page import Report, Row, Tables, part
 
 PYTHON = ROOT / "examples" / "python"
 GRID = 0.2  # s, where runs of the car are compared; every step divides it
-STRAIGHT, CIRCLE, STEP, LANE, HILL = manoeuvres("car").values()
-LAUNCH, BRAKE = manoeuvres("suspended").values()
+STEPS = (0.01, 0.005, 0.0025)  # s, of which errors show orders
+LANE, STEP = MANOEUVRES["lane"], MANOEUVRES["step"]
 IN_PLANE = STEP.changed(k_v=0.0, k_i=0.0, B_0=1500.0, t_brake=2.0, **planar.LEVEL)
-HELD_STEPS = (0.005, 0.0025, 0.00125)  # s, of the quarter car
-KINDS = {
-    "positions held": ("held", 0.0),
-    "positions that follow": ("held", 1.0),
-    "first derivatives": ("derivatives", 1.0),
-}
 CASE = ["inputs over the step", "step [ms]"]
 EIGENVALUES = {  # 1/s, at 5 m/s, and speeds, m/s: Meijaard et al. 2007
     "eigenvalue of the weave, real": -0.77534188219585,
@@ -61,27 +57,13 @@ def bicycle(report: Report) -> dict[str, object]:
 
 
 @part(60)
-def quarter_car(report: Report) -> dict[str, object]:
-    """the quarter car: error against the step"""
-    truth = drive(report.fmus, LAUNCH, HELD_STEPS[-1] / 8, "derivatives", 0.05).whole
-    found = {
-        name: [error(report.fmus, LAUNCH.changed(follow=follow), truth, h, exchange) for h in HELD_STEPS]
-        for name, (exchange, follow) in KINDS.items()
-    }
-    coarse, fine = found["first derivatives"][-2:]
-    table = pd.DataFrame({"step, ms": 1000 * np.array(HELD_STEPS)} | found)
-    return {"quarter_car": table, "order": abs(2 - np.log2(coarse / fine))}
-
-
-@part(60)
 def forms(report: Report) -> pd.DataFrame:
-    """both cars beside closed forms, at 1 ms; the picture of the lane change"""
+    """the car beside closed forms, at 1 ms; the picture of the lane change"""
     rows = []
-    for run in (STEP,) if report.quick else (LAUNCH, BRAKE, STRAIGHT, CIRCLE, STEP, HILL):
-        table = drive(report.fmus, run, 0.001).whole
-        name = run.name if run.vehicle == "car" else "quarter car"
-        rows += [(name, f.what, f.unit, f.measured, f.exact) for f in judges.judge(table, run)]
-    draw(LANE, drive(report.fmus, LANE).whole, report.folder / "vehicles_lane.png")
+    for name in ("step",) if report.quick else judges.JUDGES:
+        run = MANOEUVRES[name]
+        rows += [(name, *finding) for finding in judges.judge(name, drive(report.fmus, run, 0.001), run)]
+    style.save_png(draw(LANE.title, drive(report.fmus, LANE)), report.folder / "vehicles_lane.png")
     table = pd.DataFrame(rows, columns=["manoeuvre", "quantity", "unit", "measured", "closed form"])
     return table.assign(**{"relative difference": (table["measured"] / table["closed form"] - 1).abs()})
 
@@ -90,59 +72,36 @@ def forms(report: Report) -> pd.DataFrame:
 def steps(report: Report) -> list[Row]:
     """the car by master and step: the lane change against rollback at half of the least step; in the plane against one
     system of equations"""
-    truth = drive(report.fmus, LANE, STEPS[-1] / 2, "rollback", GRID).whole
+    truth = drive(report.fmus, LANE, STEPS[-1] / 2, "rollback", GRID)
     plane = planar.solved(IN_PLANE, np.arange(0, IN_PLANE.stop + GRID / 2, GRID))
     rows: list[Row] = []
-    for exchange, h in product(EXCHANGES, STEPS[:2] if report.quick else STEPS):
+    for exchange, h in product(ORDERS, STEPS[:2] if report.quick else STEPS):
         begin = time.process_time()
-        found = apart("car", drive(report.fmus, LANE, h, exchange, GRID).whole, truth)
+        lane = error(drive(report.fmus, LANE, h, exchange, GRID), truth)
         took = (time.process_time() - begin) / LANE.stop
-        row = {"inputs over the step": exchange, "step [ms]": 1000 * h, "lane change": max(found.values())}
-        row["in the plane"] = error(report.fmus, IN_PLANE, plane, h, exchange)
+        row = {"inputs over the step": exchange, "step [ms]": 1000 * h, "lane change": lane}
+        row["in the plane"] = error(drive(report.fmus, IN_PLANE, h, exchange, GRID), plane)
         rows.append(row | {"computing time over simulated time": took})
     return rows
 
 
-@part(60)
-def limits(report: Report) -> pd.DataFrame:
-    """the largest stable step: by the rule, and where the coupled FMUs begin to diverge"""
+def limit() -> float:
+    """The largest step at which the straight car is stable with held values, by the rule, s."""
     of = runpy.run_path(str(PYTHON / "step_limit.py"))
-    step_limit, Wheel = of["step_limit"], of["Wheel"]
-    rolls = LAUNCH.changed(v=10.0, v_start=10.01, M_drive=0.0, s=0.0)
-    link = [(rolls["k_h"], rolls["c_h"], ("wheel", "X"), "body")]
-    rule = step_limit({"wheel": Wheel()}, {"body": rolls["m_B"]}, link)
-    rows = [{"coupling": "quarter car"} | bounds(report, rolls, "F_X", rule)]
-    run = STRAIGHT.changed(v=10.0, v_start=10.01, M_0=0.0, B_0=0.0, s=0.0)
-    wheels = {w: Wheel(guided=True, v=run["v"], follows="yaw") for w in judges.WHEELS}
-    along = [(run["k_h"], run["c_h"], (w, "X"), {"X": 1.0, "yaw": -run[f"y_{w}"]}) for w in wheels]
-    across = [(run["k_h"], run["c_h"], (w, "Y"), {"Y": 1.0, "yaw": run[f"x_{w}"]}) for w in wheels]
-    bodies = {"X": run["m_B"], "Y": run["m_B"], "yaw": run["J_3"]}
-    rule = step_limit(wheels, bodies, [*along, *across])
-    return pd.DataFrame([*rows, {"coupling": "car"} | bounds(report, run, "fl.lambda_1", rule)])
-
-
-def bounds(report: Report, run: Manoeuvre, signal: str, rule: float) -> Row:
-    """Between which steps the coupling begins to diverge, by bisection from 30 % below the rule to 30 % above."""
-    stable, diverges = 0.7 * rule, 1.3 * rule
-    while diverges - stable > 0.01 * rule:
-        h = (stable + diverges) / 2
-        stable, diverges = (stable, h) if grows(report, run, signal, h) else (h, diverges)
-    off = abs((stable + diverges) / 2 / rule - 1)
-    return {"rule, ms": 1e3 * rule, "stable, ms": 1e3 * stable, "diverges, ms": 1e3 * diverges, "off the rule": off}
-
-
-def grows(report: Report, run: Manoeuvre, signal: str, h: float) -> bool:
-    """Whether a signal swings wider at the end of 400 steps with held values than near their start."""
-    driven = drive(report.fmus, run.changed(stop=400 * h), h, "held", h)
-    return bool(driven.ending) or np.ptp(driven.table[signal][-40:]) > np.ptp(driven.table[signal][10:50])
+    wheels = {w: of["Wheel"](guided=True, v=LANE["v_start"], follows="yaw") for w in WHEELS}
+    k, c = LANE["k_h"], LANE["c_h"]
+    along = [(k, c, (w, "X"), {"X": 1.0, "yaw": -LANE[f"y_{w}"]}) for w in wheels]
+    across = [(k, c, (w, "Y"), {"Y": 1.0, "yaw": LANE[f"x_{w}"]}) for w in wheels]
+    bodies = {"X": LANE["m_B"], "Y": LANE["m_B"], "yaw": LANE["J_3"]}
+    return of["step_limit"](wheels, bodies, [*along, *across])
 
 
 def figures(tables: Tables) -> Row:
-    """Those that follow from the tables: orders, and the step of the package."""
-    found: Row = {"step": 1000 * LANE.h}
+    """Those that follow from the tables: orders; the step of the package, and its limit."""
+    found: Row = {"step": 1000 * system()["step"], "limit_car": 1000 * limit()}
     if "steps" in tables:
         every = tables["steps"].set_index(CASE)
-        for exchange, order in zip(EXCHANGES, (1, 2, 4), strict=True):
+        for exchange, order in zip(ORDERS, (1, 2, 4), strict=True):
             coarse, fine = (every.loc[(exchange, 1000 * h), "in the plane"] for h in STEPS[:2])
             found[f"order_{exchange}"] = abs(np.log2(coarse / fine) - order)
         found["plane"] = every["in the plane"].min()

@@ -2,7 +2,6 @@
 
 The source folder is the project's root, so that links between documents, and to sources, stay as they are.
 Formulas become MathML, which browsers draw by themselves, with a font for mathematics that the site brings along.
-docs/decisions/package.md: why it is made like this.
 """
 
 from __future__ import annotations

@@ -1,118 +1,125 @@
-"""./scripts/example NAME [parameter=value ...]: builds the FMUs, runs a manoeuvre, compares it with closed forms, draws
-and packs it into results/examples/NAME/. The exit status is 0 where the run reaches its end and each closed form holds.
-"""
+"""./scripts/example: drives the car through a manoeuvre, or the quarter car, prints closed forms and draws."""
 
-import runpy
 import shutil
 import sys
-from itertools import cycle
-from pathlib import Path
+from collections.abc import Iterable
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from wheelfmu.diagrams import style
-from wheelfmu.fmu.outputs import new_folder
 from wheelfmu.fmu.paths import ROOT
 
-from . import judges, options
-from .options import EXAMPLES, VEHICLES, Manoeuvre
-from .vehicle import Fmus, Run, Table, build_all, drive, wheels
+from . import judges
+from .car import BUILT, Table, build_all, drive, recorded
+from .manoeuvres import J_Z, M_WHEEL, MANOEUVRES, WHEELS, G, R, system
+from .master import Ended
 
 RESULTS = ROOT / "results" / "examples"
-PER_PICTURE = 600  # rows, about
-SCALES = {"deg": 180 / np.pi, "deg/s": 180 / np.pi, "km/h": 3.6, "kN": 1e-3}  # of a label's unit
-COLOURS = (style.BLUE, style.VERMILLION, style.SKY, style.ORANGE)
-DASHES = ("-", "--", ":", "-.")  # a curve that has the values of the one before is seen through its gaps
+FIRST = "lane"  # if no manoeuvre is given
+GRID = 0.012  # s, of the table
+STYLES = list(zip((style.BLUE, style.VERMILLION, style.SKY, style.ORANGE), ("-", "--", ":", "-."), strict=True))
+PANELS = {  # label: factor, columns
+    "speed [km/h]": (3.6, ["v"]),
+    "angle [deg]": (180 / np.pi, ["delta", "roll", "pitch"]),
+    "yaw rate [deg/s]": (180 / np.pi, ["omega"]),
+    "torque [N m]": (1, ["M_drive", "M_brake"]),
+    "normal force [kN]": (1e-3, [f"{wheel}.lambda_3" for wheel in WHEELS]),
+    "lateral force [kN]": (1e-3, [f"{wheel}.lambda_y" for wheel in WHEELS]),
+}
+# Of the quarter car.
+M_BODY = 300.0  # kg, its sprung mass
+RECORD = {"wheel": ("X_O_dot", "omega_z", "lambda_3", "mu_required"), "quarter_car": ("X_B_dot", "Z_B", "F_X", "M_3")}
+PANELS_OF_ONE = {
+    "speed [m/s]": (1, ["X_O_dot", "X_B_dot"]),
+    "force [kN]": (1e-3, ["F_X", "lambda_3"]),
+    "torque [N m]": (1, ["M_3"]),
+    "friction required": (1, ["mu_required"]),
+}
 
 
-def draw(run: Manoeuvre, table: Table, path: Path) -> Path:
-    """The path from above, where the run turns, and the panels of the vehicle over time."""
+def draw(title: str, table: Table) -> Figure:
+    """Tracks of the car's wheels from above, and the panels over time."""
     style.use_style()
-    panels, names = VEHICLES[run.vehicle]["plot"], wheels(run.vehicle)
-    rows = (len(panels) + 1) // 2 + (turns := run.vehicle == "car" and bool(np.ptp(table["Y"]) > 0.1))
-    fig = style.figure_mm(style.PAGE, 6 + 45 * rows)
+    fig = figure(f"Car: {title}", 186)
+    grid = fig.add_gridspec(4, 2)
+    track = fig.add_subplot(grid[0, :])
+    for wheel, (colour, dashes) in zip(WHEELS, STYLES, strict=True):
+        track.plot(table[f"{wheel}.X_O"], table[f"{wheel}.Y_O"], color=colour, linestyle=dashes, label=wheel)
+    track.set(xlabel="X [m]", ylabel="Y [m]")
+    legend(track)
+    draw_panels([fig.add_subplot(grid[1 + k // 2, k % 2]) for k in range(len(PANELS))], PANELS, table)
+    return fig
+
+
+def figure(title: str, height: float) -> Figure:
+    """Height in mm."""
+    fig = style.figure_mm(style.PAGE, height)
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
-    fig.suptitle(f"{run.vehicle.capitalize()}: {run.title}", fontsize=9)
-    grid = fig.add_gridspec(rows, 2)
-    if turns:
-        draw_path(fig.add_subplot(grid[0, :]), table, names)
-    for cell, (label, *columns) in enumerate(panels, 2 * turns):
-        draw_panel(fig.add_subplot(grid[cell // 2, cell % 2]), table, label, columns, names)
-    return style.save_png(fig, path)
+    fig.suptitle(title, fontsize=9)
+    return fig
 
 
-def draw_panel(ax: Axes, table: Table, label: str, columns: list[str], names: list[str]) -> None:
-    """Curves over time; the unit at the label's end scales them."""
-    scale = SCALES.get(label.split("[")[-1].rstrip("]"), 1.0)
-    every = [column.replace("*", name) for column in columns for name in (names if "*" in column else [""])]
-    for column, colour, dashes in zip(every, cycle(COLOURS), cycle(DASHES), strict=False):
-        ax.plot(table["time"], scale * table[column], color=colour, linestyle=dashes, label=column.partition(".")[0])
-    if len(every) > 1:
-        ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2, handlelength=1.5)
-    ax.ticklabel_format(axis="y", useOffset=False, style="plain")
-    ax.set(xlabel="time [s]", ylabel=label)
-
-
-def draw_path(ax: Axes, table: Table, names: list[str]) -> None:
-    """Tracks of the wheels' centres, and the wheels' headings a few times."""
-    for name, colour, dashes in zip(names, cycle(COLOURS), cycle(DASHES[:2]), strict=False):
-        x, y, psi = (table[f"{name}.{of}"] for of in ("X_O", "Y_O", "psi"))
-        ax.plot(x, y, color=colour, linewidth=0.9, linestyle=dashes, label=name)
-        at = slice(None, None, max(1, len(x) // 8))
-        how = {"angles": "xy", "color": style.INK, "width": 0.002, "alpha": 0.5}
-        ax.quiver(x[at], y[at], np.cos(psi[at]), np.sin(psi[at]), **how)
+def legend(ax: Axes) -> None:
     ax.legend(loc="lower left", bbox_to_anchor=(0, 0.98), ncols=4, borderaxespad=0.2)
-    ax.set(xlabel="X [m]", ylabel="Y [m]")
 
 
-def judged(asked: Manoeuvre, run: Run) -> tuple[bool, list[str]]:
-    """Whether the run reached its end and its closed forms hold, in words."""
-    if run.ending:
-        end = run.ending
-        return False, [f"Failed: {end.component} ended the run at t = {end.time:.3f} s: {end.message}"]
-    found = judges.judge(run.table, asked)
-    lines = [str(finding) for finding in found]
-    if asked.vehicle == "car":
-        needs = ", ".join(f"{axle} {mu:.2f}" for axle, mu in judges.demand(run.table).items())
-        lines.append(f"Friction coefficient required by the axles: {needs}.")
-    holds = all(finding.holds for finding in found)
-    return holds, [*lines, *["Failed: a closed form does not hold."] * (not holds)]
+def draw_panels(axes: Iterable[Axes], panels: dict[str, tuple[float, list[str]]], table: Table) -> None:
+    for ax, (label, (factor, columns)) in zip(axes, panels.items(), strict=True):
+        for name, (colour, dashes) in zip(columns, STYLES, strict=False):
+            ax.plot(table["time"], factor * table[name], color=colour, linestyle=dashes, label=name.split(".")[0])
+        ax.ticklabel_format(axis="y", useOffset=False, style="plain")
+        ax.set(xlabel="time [s]", ylabel=label)
+        if len(columns) > 1:
+            legend(ax)
 
 
-def example(fmus: Fmus, asked: Manoeuvre, folder: Path) -> bool:
-    """One example: run, table, picture, FMUs and package, verdict."""
-    system, name = options.system(asked.vehicle), asked.vehicle
-    grid = max(1, round(asked.stop / PER_PICTURE / asked.h)) * asked.h
-    run = drive(fmus, asked, grid=grid, progress=True)
-    passed, lines = judged(asked, run)
-    print(f"{asked.title[0].upper()}{asked.title[1:]}.", *lines, sep="\n")
-    rows, head = np.column_stack(list(run.table.values())), ",".join(run.table)
+def leave(name: str, of: str, table: Table, fig: Figure) -> None:
+    """Table, picture, package and FMUs in results/examples/."""
+    folder, model = RESULTS / name, system(of)["fmus"]
+    folder.mkdir(parents=True, exist_ok=True)
+    rows, head = np.column_stack(list(table.values())), ",".join(table)
     np.savetxt(folder / f"{name}.csv", rows, "%.9g", delimiter=",", header=head, comments="")
-    if len(rows) > 1:
-        draw(asked, run.table, folder / f"{name}.png")
-    package = runpy.run_path(str(EXAMPLES / "package.py"))
-    of = system | {"start": asked.start(), "step": asked.h, "stop": asked.stop}
-    package["write"](folder / f"{Path(VEHICLES[name]['system']).stem}.ssp", of, fmus)
-    for model in sorted(set(system["fmus"].values())):
-        shutil.copyfile(fmus[model], folder / f"{model}.fmu")
-    return passed
+    style.save_png(fig, folder / f"{name}.png")
+    shutil.copyfile(BUILT / f"{of}.ssp", folder / f"{of}.ssp")
+    for one in {*model.values()} - {"wheel"}:
+        shutil.copyfile(BUILT / f"{one}.fmu", folder / f"{one}.fmu")
+    print(f"In results/examples/{name}: {', '.join(sorted(path.name for path in folder.iterdir()))}.")
 
 
-def main(words: list[str]) -> int:
-    """One example."""
+def drive_car(manoeuvre: str) -> None:
+    """A manoeuvre of the car."""
+    run = MANOEUVRES[manoeuvre]
+    table = drive(build_all(), run, grid=GRID, progress=True)
+    print(f"{run.title.capitalize()}.", *judges.judge(manoeuvre, table, run), sep="\n")
+    leave("car", "car", table, draw(run.title, table))
+
+
+def launch_quarter_car() -> None:
+    """The quarter car's launch from rest by its hub motor: (m + J_z / R^2) a = (M_drive - s m g) / R."""
+    of = system("quarter_car")
+    rows = recorded(build_all(), of, RECORD, "derivatives", 0.0, progress=True)
+    table = dict(zip(("time", *(name for names in RECORD.values() for name in names)), np.transpose(rows), strict=True))
+    late, m = table["time"] > of["stop"] - 0.5, M_BODY + M_WHEEL
+    measured = float(np.polyfit(table["time"][late], table["X_B_dot"][late], 1)[0])
+    a = (-of["start"]["quarter_car"]["M_drive"] - of["start"]["wheel"]["s"] * m * G) / R / (m + J_Z / R**2)
+    title = "launch from rest by the hub motor"
+    print(f"{title.capitalize()}.", judges.Finding("acceleration of the launch", "m/s2", measured, a), sep="\n")
+    style.use_style()
+    fig = figure(f"Quarter car: {title}", 96)
+    draw_panels(fig.subplots(2, 2).flat, PANELS_OF_ONE, table)
+    leave("suspended", "quarter_car", table, fig)
+
+
+def main(name: str, manoeuvre: str = "") -> int:
+    """Exit status 1: an FMU ended the run."""
     try:
-        asked = options.asked(*words)
-        fmus, folder = build_all(), RESULTS / asked.vehicle
-        folder.mkdir(parents=True, exist_ok=True)
-        with new_folder(folder) as new:
-            passed = example(fmus, asked, new)
-            for old in folder.glob(f"{asked.vehicle}.png"):  # a run without rows has none
-                old.unlink()
-            for file in new.iterdir():
-                file.replace(folder / file.name)
-    except ValueError as reason:
-        print(reason, file=sys.stderr)
+        if name == "suspended":
+            launch_quarter_car()
+        else:
+            drive_car(manoeuvre or FIRST)
+    except Ended as end:
+        print(f"{end.component} ended the run at t = {end.time:.3f} s: {end.message}", file=sys.stderr)
         return 1
-    print(f"In results/examples/{folder.name}: {', '.join(sorted(p.name for p in folder.iterdir()))}.")
-    return not passed
+    return 0

@@ -10,28 +10,18 @@ dependencies in the model descriptions allow, and then all FMUs step alone. Over
 """
 
 import shutil
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
-from ctypes import POINTER, byref, c_double
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
-from itertools import groupby
 from math import ceil
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Slave,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    fmi2FMUstate,
-    fmi2Integer,
-    fmi2LastSuccessfulTime,
-    fmi2Real,
-    fmi2ValueReference,
-)
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2LastSuccessfulTime
 from fmpy.simulation import apply_start_values
 
 from wheelfmu.fmu.progress import bar
@@ -62,48 +52,29 @@ class Component:
     fmu: FMU2Slave | None = field(default=None, init=False)
 
     def load(self) -> None:
-        """Unpack, instantiate and initialize up to initialization mode; a ValueError has the FMU's message."""
+        """Unpack, instantiate and initialize up to initialization mode."""
         self.folder, self.log = extract(str(self.path)), []
         self.description = read_model_description(self.folder)
-        self.variable = {v.name: v for v in self.description.modelVariables}
-        self.references(self.start)  # a name that does not exist
+        self.number = {v.name: v.valueReference for v in self.description.modelVariables}
         of = {"guid": self.description.guid, "modelIdentifier": self.description.coSimulation.modelIdentifier}
         self.fmu = FMU2Slave(unzipDirectory=self.folder, instanceName=self.name, **of)
         callbacks = fmi2CallbackFunctions()  # fmpy's own logger serves one instance per process
         callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text: self.log.append(text.decode()))
         self.fmu.instantiate(callbacks=callbacks)
         self.fmu.setupExperiment(startTime=0.0)
-        self.asked(apply_start_values, self.fmu, self.description, self.start)
-        self.asked(self.fmu.enterInitializationMode)
+        apply_start_values(self.fmu, self.description, self.start)
+        self.fmu.enterInitializationMode()
 
-    def asked(self, function: Callable, *arguments: object) -> None:
-        """Calls a function of the FMU; where it refuses, a ValueError with its last message."""
-        try:
-            function(*arguments)
-        except FMICallException as refusal:
-            raise ValueError(f"{self.name}: {self.last_message(str(refusal))}") from refusal
-
-    def ended(self, t: float) -> Ended:
-        """How it ended the run in a step from t on."""
-        message, last = self.last_message("it refused a call"), c_double(t)
-        self.fmu.dll.fmi2GetRealStatus(self.fmu.component, fmi2LastSuccessfulTime, byref(last))
-        return Ended(self.name, last.value, message)
-
-    def last_message(self, otherwise: str) -> str:
-        """FMI 2.0 doubles the characters % and # of a message."""
-        return self.log[-1].replace("%%", "%").replace("##", "#") if self.log else otherwise
+    def ended(self) -> Ended:
+        """How it ended the run in a step. FMI 2.0 doubles the characters % and # of a message."""
+        message = (self.log[-1] if self.log else "it refused a step").replace("%%", "%").replace("##", "#")
+        return Ended(self.name, self.fmu.getRealStatus(fmi2LastSuccessfulTime), message)
 
     def free(self) -> None:
         """End the run and remove the unpacked files."""
         if self.fmu:
             self.fmu.freeInstance()
             shutil.rmtree(self.folder, ignore_errors=True)
-
-    def references(self, names: Iterable[str]) -> list[int]:
-        """Value references of variables."""
-        if unknown := [name for name in names if name not in self.variable]:
-            raise ValueError(f"{self.name} has no variable {unknown[0]}.")
-        return [self.variable[name].valueReference for name in names]
 
     def feeds(self, output: str) -> list[str]:
         """Inputs on which an output depends directly; undeclared dependencies mean all."""
@@ -122,25 +93,26 @@ def loaded(*components: Component) -> Iterator[None]:
         yield
 
 
-class Transfer:
+class Transfer(NamedTuple):
     """Variables of one component that are read (outputs) or set (inputs) together, with their places in the arrays of
-    all signals. The buffers are built once: a step of the car makes a hundred such calls."""
+    all signals."""
 
-    def __init__(self, component: Component, reads: bool, references: list[int], at: list[int]) -> None:
-        size = len(at)
-        self.component, self.reads, self.at, self.values = component, reads, np.array(at), np.zeros(size)
-        self.head = component.fmu.component, (fmi2ValueReference * size)(*references), size
-        self.orders = [(fmi2Integer * size)(*[order] * size) for order in range(4)]
-        self.place = self.values.ctypes.data_as(POINTER(fmi2Real))
+    component: Component
+    reads: bool
+    numbers: list[int]
+    at: list[int]
 
     def __call__(self, order: int, signals: np.ndarray) -> None:
-        fmu, more = self.component.fmu, (self.orders[order], self.place) if order else (self.place,)
-        if self.reads:
-            (fmu.fmi2GetRealOutputDerivatives if order else fmu.fmi2GetReal)(*self.head, *more)
-            signals[self.at] = self.values
+        """The values (order 0), or derivatives of this order."""
+        fmu, orders = self.component.fmu, [order] * len(self.at)
+        if self.reads and order:
+            signals[self.at] = fmu.getRealOutputDerivatives(self.numbers, orders)
+        elif self.reads:
+            signals[self.at] = fmu.getReal(self.numbers)
+        elif order:
+            fmu.setRealInputDerivatives(self.numbers, orders, signals[self.at])
         else:
-            self.values[:] = signals[self.at]
-            (fmu.fmi2SetRealInputDerivatives if order else fmu.fmi2SetReal)(*self.head, *more)
+            fmu.setReal(self.numbers, signals[self.at])
 
 
 class Master:
@@ -150,16 +122,17 @@ class Master:
         self.components = {c.name: c for c in components}
         self.source_of = {sink: source for source, sink in connections}
         self.transfers: list[Transfer] = []
-        number: dict[Signal, int] = {}
+        place: dict[Signal, int] = {}
         for level in self._levels():
-            number |= {source: len(number) + k for k, source in enumerate(level)}
+            place |= {source: len(place) + k for k, source in enumerate(level)}
             sinks = [(sink, source) for sink, source in self.source_of.items() if source in level]
             for reads, ends in ((True, [(source, source) for source in level]), (False, sinks)):
                 for name, component in self.components.items():
-                    if of := {variable: number[source] for (owner, variable), source in ends if owner == name}:
-                        self.transfers.append(Transfer(component, reads, component.references(of), [*of.values()]))
+                    of = {component.number[end[1]]: place[source] for end, source in ends if end[0] == name}
+                    if of:
+                        self.transfers.append(Transfer(component, reads, [*of], [*of.values()]))
         self.sets = [transfer for transfer in self.transfers if not transfer.reads]
-        self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(number)))
+        self.value, self.rate, self.begin_value, self.begin_rate = np.zeros((4, len(place)))
 
     def _levels(self) -> Iterator[list[Signal]]:
         """Connected outputs, those together that depend on outputs before them alone; rejects algebraic loops."""
@@ -177,64 +150,55 @@ class Master:
         """Simulates from 0 to `stop`, with a shorter last step where h does not divide it, and waits after the exchange
         at the communication points 0, `every`, ... and `stop`: yields the time, at which variables may be read, and
         inputs set that are not connected. Raises Ended."""
-        self.states, count = {name: fmi2FMUstate() for name in self.components}, ceil(stop / h - 1e-9)
-        self._exchange(0.0, ORDERS["held"])
+        count = ceil(stop / h - 1e-9)
+        self._exchange(ORDERS["held"])
         for component in self.components.values():
-            component.asked(component.fmu.exitInitializationMode)
-        try:
-            for i in bar(range(count + 1), shown=progress, leave=False):
-                t, to = (k * h if k < count else stop for k in (i, i + 1))
-                self._exchange(t, ORDERS[exchange])
-                if i % every == 0 or i == count:
-                    yield t
-                if i < count and exchange == "rollback":
-                    self._step_twice(t, to - t, i == 0)
-                elif i < count:
-                    self._step(t, to - t, no_way_back=True)
-        finally:
-            for name, state in self.states.items():
-                self.components[name].fmu.freeFMUState(state)
+            component.fmu.exitInitializationMode()
+        for i in bar(range(count + 1), shown=progress, leave=False):
+            t, to = (k * h if k < count else stop for k in (i, i + 1))
+            self._exchange(ORDERS[exchange])
+            if i % every == 0 or i == count:
+                yield t
+            if i < count and exchange == "rollback":
+                self._step_twice(t, to - t, i == 0)
+            elif i < count:
+                self._step(t, to - t, no_way_back=True)
 
     def _step(self, t: float, h: float, no_way_back: bool) -> None:
         for component in self.components.values():
             try:
                 component.fmu.doStep(t, h, no_way_back)
             except FMICallException:
-                raise component.ended(t) from None
+                raise component.ended() from None
 
     def _step_twice(self, t: float, h: float, first: bool) -> None:
         """On parabolas with the second derivatives of the last step, and again on the cubics through both ends."""
         second = (self.rate - self.begin_rate) / h
         self.begin_value[:], self.begin_rate[:] = self.value, self.rate
         if not first:
-            self._transfer(t, self.sets, 2, second)
-        for name, component in self.components.items():
-            component.fmu.fmi2GetFMUstate(component.fmu.component, byref(self.states[name]))
+            self._transfer(self.sets, 2, second)
+        states = [(component.fmu, component.fmu.getFMUstate()) for component in self.components.values()]
         self._step(t, h, no_way_back=False)
-        self._exchange(t, ORDERS["rollback"])
-        for name, component in self.components.items():
-            component.fmu.setFMUState(self.states[name])
+        self._exchange(ORDERS["rollback"])
+        for fmu, state in states:
+            fmu.setFMUstate(state)
+            fmu.freeFMUstate(state)
         mean, begin, end = (self.value - self.begin_value) / h, self.begin_rate, self.rate
         cubic = (self.begin_value, begin, 2 * (3 * mean - 2 * begin - end) / h, 6 * (begin + end - 2 * mean) / (h * h))
         for order, signals in enumerate(cubic):
-            self._transfer(t, self.sets, order, signals)
+            self._transfer(self.sets, order, signals)
         self._step(t, h, no_way_back=False)
 
-    def _exchange(self, t: float, orders: tuple[int, ...]) -> None:
+    def _exchange(self, orders: tuple[int, ...]) -> None:
         for order in orders:
-            self._transfer(t, self.transfers, order, self.rate if order else self.value)
+            self._transfer(self.transfers, order, self.rate if order else self.value)
 
-    def _transfer(self, t: float, transfers: Iterable[Transfer], order: int, signals: np.ndarray) -> None:
-        """The values (order 0), or derivatives of this order."""
+    @staticmethod
+    def _transfer(transfers: Iterable[Transfer], order: int, signals: np.ndarray) -> None:
         for transfer in transfers:
-            try:
-                transfer(order, signals)
-            except FMICallException:
-                raise transfer.component.ended(t) from None
+            transfer(order, signals)
 
-    def read(self, signals: Iterable[Signal]) -> list[float]:
-        """Their values."""
-        found = []
-        for component, of in groupby(signals, lambda signal: self.components[signal[0]]):
-            found += component.fmu.getReal(component.references([name for _, name in of]))
-        return found
+    def read(self, component: str, names: Iterable[str]) -> list[float]:
+        """Values of variables."""
+        of = self.components[component]
+        return of.fmu.getReal([of.number[name] for name in names])

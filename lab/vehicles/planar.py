@@ -15,9 +15,9 @@ from math import cos, sin, tan
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .judges import WHEELS, car, rise
-from .options import J_X, J_Z, M_WHEEL, Manoeuvre, R
-from .vehicle import Table
+from .car import Table
+from .judges import car, rise
+from .manoeuvres import J_X, J_Z, M_WHEEL, WHEELS, Manoeuvre, R
 
 LEVEL = {"J_1": 1e15, "J_2": 1e15}  # kg m2: with these the chassis FMU stays in the plane for seconds, to 1e-10 rad
 
@@ -63,7 +63,7 @@ def solved(run: Manoeuvre, times: np.ndarray) -> Table:
         motion = [omega, P_dot, rate, late], (u[:, None] * e).ravel(), u_dot
         return np.concatenate([v, -axes @ f.sum(0) / c.m_B, *motion])
 
-    at, v = np.zeros(2), run["v"]  # along X
+    at, v = np.zeros(2), run["v_start"]  # along X
     y_0 = np.concatenate([at, [v, 0], np.zeros(4), (at + hubs).ravel(), [v] * 4])
     found = solve_ivp(rates, (0, times[-1]), y_0, "DOP853", times, rtol=1e-11, atol=1e-11)
     _, _, omega, _, speed = zip(*map(moved, found.t, found.y.T), strict=True)

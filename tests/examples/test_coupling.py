@@ -64,7 +64,7 @@ def test_a_brake_at_the_limit_in_a_turn_needs_more_than_one_newton_step(wheel: N
     exact = along * R * (1 + J_Z / (M * R**2))  # the spin is slowed down too
     turning = wheel().start(**UPRIGHT | {"phi_dot_start": -v / R})
     assert turning.set(psi_dot_guide=turn, M_brake=500.0) == OK
-    limited = example("brake_limit")["brake"]
+    limited = example("anti_lock")["limited"]
     found = limited(Numbered(turning), 500.0, grip)
     within(abs(found / exact - 1), 1e-9, "capacity off the closed form, relative")
     within(abs(turning.get("mu_required")[0] / grip - 1), 1e-9, "friction required off the grip, relative")
@@ -82,6 +82,31 @@ class Numbered:
 
 def directional(wheel: FMU2Wheel) -> Callable:
     return super(FMU2Wheel, wheel).getDirectionalDerivative
+
+
+def test_a_position_that_is_held_over_the_step_brakes_a_body_by_the_drag_of_its_lag(wheel: New) -> None:
+    """k v h / 2, of a link of stiffness k at speed v. Partner: a position that follows the velocity."""
+    v, k, c, m_B, h = 10.0, 6e4, 2e3, 300.0, 0.002
+
+    def speed(follow: float) -> float:
+        """After 0.5 s: of the body, which is integrated with the position of the wheel held, or on a straight line."""
+        rolling = wheel().start(**UPRIGHT | {"phi_dot_start": -v / R})
+        at, moving = 0.0, v
+        for _ in range(250):
+            X, X_dot = rolling.get("X_O", "X_O_dot")
+            assert rolling.set(F_X=k * (at - X) + c * (moving - X_dot)) == OK
+
+            def rates(t: float, y: np.ndarray, X: float = X, X_dot: float = X_dot) -> list[float]:
+                return [y[1], -(k * (y[0] - X - follow * X_dot * t) + c * (y[1] - X_dot)) / m_B]
+
+            at, moving = solve_ivp(rates, (0, h), [at, moving], rtol=1e-9, atol=1e-12).y[:, -1]
+            assert rolling.step(h) == OK
+        return moving
+
+    lost = [v - speed(follow) for follow in (0.0, 1.0)]
+    drag = v * (1 - np.exp(-k * h / 2 * 0.5 / (m_B + M + J_Z / R**2)))
+    within(abs(lost[0] / drag - 1), 0.05, "speed lost off that by the drag, relative")
+    within(abs(lost[1] / drag), 0.05, "speed lost by a position that follows, over that of a held one")
 
 
 def repeated(wheel: FMU2Wheel, h: float, speed: float, count: int = 12) -> np.ndarray:

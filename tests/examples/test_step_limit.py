@@ -54,23 +54,12 @@ def at_speed(v: float, lean: tuple, turn: tuple) -> tuple:
     return {**UPRIGHT, "phi_dot_start": -v / Wheel.R}, {"wheel": Wheel(v=v)}, {}, links
 
 
-def free_wheel(name: str) -> list:
-    camber, steer = (4e4, 400.0), (2e4, 100.0)
-    return [
-        (*camber, (name, "lean"), None),
-        (*steer, (name, "turn"), None),
-        (*BUSHING, (name, "X"), "body X"),
-        (*BUSHING, (name, "Y"), "body Y"),
-    ]
-
-
 # start values, wheels, bodies, links
 COUPLINGS = {
     "a bushing on a body": (GUIDED, ROLLS, {"body": 300.0}, [(*BUSHING, ("wheel", "X"), "body")]),
     "a stiff, hardly damped link": (GUIDED, ROLLS, {"body": 300.0}, [(2e5, 600.0, ("wheel", "X"), "body")]),
     "a bushing, the wheel locked": (SLIDES, SLIDING, {"body": 300.0}, [(*BUSHING, ("wheel", "X"), "body")]),
     "four wheels on one beam": (GUIDED, FOUR, {"beam": 150.0}, [(*BUSHING, (name, "X"), "beam") for name in FOUR]),
-    "a drive shaft, rolling": (GUIDED, ROLLS, {"engine": 0.6}, [(*SHAFT, ("wheel", "spin"), "engine")]),
     "a drive shaft, spinning": (SLIDES, SLIDING, {"engine": 0.6}, [(*SHAFT, ("wheel", "spin"), "engine")]),
     "a drive shaft and a bushing": (
         GUIDED,
@@ -79,12 +68,6 @@ COUPLINGS = {
         [(*SHAFT, ("wheel", "spin"), "engine"), (*BUSHING, ("wheel", "X"), "body")],
     ),
     "a camber link": (UPRIGHT, ROLLS, {"hub": 2.0}, [(4e4, 400.0, ("wheel", "lean"), "hub"), (2e4, 50.0, "hub", None)]),
-    "two free wheels on a body": (
-        UPRIGHT,
-        TWO,
-        {"body X": 300.0, "body Y": 300.0},
-        [link for name in TWO for link in free_wheel(name)],
-    ),
     "two wheels on a body that yaws": (
         GUIDED,
         TWO,
@@ -102,55 +85,46 @@ class Coupled:
     """The coupling, and its motion under held forces."""
 
     def __init__(self, new, start, wheels, bodies, links, kick: float) -> None:
-        self.links, self.bodies, self.properties = links, bodies, wheels
+        self.links = [(k, c, self.moves(first, 1), self.moves(second, -1)) for k, c, first, second in links]
+        self.bodies, self.properties = bodies, wheels
         start = start if bodies else {**start, "theta_dot_start": kick}
         self.wheels: dict[str, FMU2Wheel] = {name: new().start(**start) for name in wheels}
         self.x, self.v = dict.fromkeys(bodies, 0.0), {name: kick * (i + 1) for i, name in enumerate(bodies)}
-        self.origin = {end: self.read(end)[0] for _, _, *ends in links for end in ends if self.of_wheel(end)}
+        self.origin = {end: self.read(end)[0] for *_, first, second in self.links for end in first | second}
 
     @staticmethod
-    def of_wheel(end) -> bool:
-        return isinstance(end, tuple)
+    def moves(end, sign: int) -> dict:
+        """What moves with an end of a link, wheels' directions and bodies, and how far."""
+        return {of: sign * ratio for of, ratio in (end if isinstance(end, dict) else {end: 1} if end else {}).items()}
 
-    def read(self, end) -> np.ndarray:
-        """Displacement and velocity of a link's end."""
-        if end is None:
-            return np.zeros(2)
-        if self.of_wheel(end):
-            return np.array(self.wheels[end[0]].get(*SIGNALS[end[1]][:2]))
-        ratios = end if isinstance(end, dict) else {end: 1.0}
-        return np.sum([np.multiply(ratio, (self.x[n], self.v[n])) for n, ratio in ratios.items()], axis=0)
+    def read(self, of) -> np.ndarray:
+        """Displacement and velocity of a wheel in a direction, or of a body."""
+        return np.array((self.x[of], self.v[of]) if of in self.bodies else self.wheels[of[0]].get(*SIGNALS[of[1]][:2]))
 
     def step(self, h: float) -> bool:
         """Over h; False where a wheel ends its run."""
-        on_body, on_wheel = dict.fromkeys(self.bodies, 0.0), {}
+        forces = dict.fromkeys(self.origin, 0.0)
         for k, c, first, second in self.links:
-            x, v = self.read(first) - self.read(second) - (self.origin.get(first, 0.0), 0.0)
-            for force, end in ((-k * x - c * v, first), (k * x + c * v, second)):
-                if end is None:
-                    continue
-                if self.of_wheel(end):
-                    name = (end[0], SIGNALS[end[1]][2])
-                    on_wheel[name] = on_wheel.get(name, 0.0) + force
-                else:
-                    for body, ratio in (end if isinstance(end, dict) else {end: 1.0}).items():
-                        on_body[body] += ratio * force
+            ends = first | second
+            x, v = np.sum([ratio * (self.read(of) - (self.origin[of], 0)) for of, ratio in ends.items()], axis=0)
+            for of, ratio in ends.items():
+                forces[of] -= ratio * (k * x + c * v)
         for name, wheel in self.wheels.items():
             if body := self.properties[name].follows:
                 heading = self.x[body] + h * self.v[body]  # before this step's forces
                 assert wheel.set(psi_dot_guide=(heading - wheel.get("psi")[0]) / h) == OK
-        for (name, load), force in on_wheel.items():
-            assert self.wheels[name].set(**{load: force}) == OK
-        for name, force in on_body.items():
-            a = force / self.bodies[name]
-            self.x[name] += self.v[name] * h + a * h**2 / 2
-            self.v[name] += a * h
+        for of, force in forces.items():
+            if of in self.bodies:
+                a = force / self.bodies[of]
+                self.x[of] += self.v[of] * h + a * h**2 / 2
+                self.v[of] += a * h
+            else:
+                assert self.wheels[of[0]].set(**{SIGNALS[of[1]][2]: force}) == OK
         ended = [wheel.step(h) != OK for wheel in self.wheels.values()]
         return not any(ended)
 
     def state(self) -> np.ndarray:
-        found = [self.read(end)[1] for end in self.origin]
-        return np.array([*found, *self.v.values()])
+        return np.array([self.read(of)[1] for of in self.origin])
 
 
 def grows(new: Callable[..., FMU2Wheel], coupling: tuple, h: float) -> bool:

@@ -90,8 +90,7 @@ void model_outputs(const Now& now, const States& x, double* y) {
   y[delta_dot] = received(u, Z_R) ? steer_rate(now, x) : 0;
   y[M_drive] = u[k_v] * speed_error(now) + u[k_i] * x[at_integral];
   y[M_drive] += u[M_0] * (rise(t, u[t_on], u[ramp_M]) - rise(t, u[t_off], u[ramp_M]));
-  /* 1 - q(x) = q(1 - x), which is never below 0. */
-  y[M_brake] = u[B_0] * rise(t, u[t_brake], u[ramp_M]) + u[B_hold] * rise(-t, -u[t_release] - u[ramp_M], u[ramp_M]);
+  y[M_brake] = u[B_0] * rise(t, u[t_brake], u[ramp_M]);
   y[p] = x[at_p];
   y[off] = u[path] != 0 ? off_path(u, place(u, x[at_p])) : 0;
 }

@@ -2,14 +2,11 @@
  * and brake. B does not turn; the wheel's own wheel carrier (`guided`) keeps the axle. Fixed axes X, Y, Z, Z up.
  *
  *   F   = k (r_B - r_O - (0, 0, l_0)) + c (v_B - v_O)         link force on the wheel, each axis its own k, c
- *   m_B a_B = -F - m_B g (sin(slope) cos(slope_direction), sin(slope) sin(slope_direction), cos(slope))
+ *   m_B a_B = -F - m_B g (0, 0, 1)
  *
  * From t_drive on the hub motor gives M_drive, M_3 about the axle. From t_brake on the brake's capacity M follows the
  * pedal, M' = (M_pedal - M) / T_brake. Until the wheel's centre is received B runs straight on, and the link gives its
  * weight. */
-#include <algorithm>
-#include <cmath>
-
 #include "model.hpp"
 
 using Eigen::Vector3d;
@@ -25,11 +22,7 @@ States model_start(const Now& now) {
   return x;
 }
 
-static Vector3d weight(const double* u) {
-  const double along = std::sin(u[slope]) * std::cos(u[slope_direction]);
-  const double across = std::sin(u[slope]) * std::sin(u[slope_direction]);
-  return -u[m_B] * u[g] * Vector3d(along, across, std::cos(u[slope]));
-}
+static Vector3d weight(const double* u) { return {0, 0, -u[m_B] * u[g]}; }
 
 static Vector3d link_force(const double* u, const States& x) {
   if (!received(u, Z_O)) return weight(u);

@@ -92,10 +92,10 @@ struct Simulation {
     return then;
   }
 
-  /* With the parameter `follow`, an input whose rate is an input too follows that rate where the master gives no
-   * derivative: a position that is held would lag. */
+  /* An input whose rate is an input too follows that rate where the master gives no derivative: a position that is held
+   * would lag. */
   void follow_rates() {
-    for (int i = 0; now.u[follow] != 0 && i < input_count; ++i)
+    for (int i = 0; i < input_count; ++i)
       if (rate_of[i] >= 0 && !given[i]) slope[0][i] = now.u[first_input + rate_of[i]];
   }
 };

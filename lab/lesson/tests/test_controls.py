@@ -29,6 +29,13 @@ def test_a_key_shows_and_hides_the_force_of_the_ground(recorded):
         assert recorded.evaluate("page.pose() ?? page.stage.models[0].arrows.get('F').group.visible") is shown
 
 
+def test_keys_of_buttons_that_the_lesson_hides_do_nothing(live):
+    open_step(live, 2)
+    for key in ("a", "g"):
+        live.keyboard.press(key)
+    assert not live.evaluate("page.switches.show.axes || page.switches.show.force")
+
+
 def test_a_number_chooses_what_is_shown(recorded):
     for key, names in (("3", ["free"]), ("1", ["free", "friction"])):
         recorded.keyboard.press(key)

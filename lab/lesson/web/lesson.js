@@ -95,7 +95,7 @@ export class Lesson {
     page.wheels = [this.wheel, ...(beside ? [{name: 'beside', label: names[1], hue: 2}] : [])];
     this.run();
     page.choice = 0;
-    page.offer(page.wheels.length);
+    page.offer();
     page.switches.flip('axes', Boolean(axes));
     page.stage.stand(eye ?? 'beside');
     if (ask && !Object.keys(chosen).length) this.guess = {asks: true};

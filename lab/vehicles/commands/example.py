@@ -1,39 +1,58 @@
-"""Builds, runs and draws a vehicle made of FMUs, or the wheel for a control engineer. Prints a verdict;
-results/examples/ has all of it. Exit status 1: the manoeuvre failed."""
+"""Builds and runs a vehicle of examples/vehicles, or the wheel for a control engineer: NAME is one of"""
 
 import sys
+from argparse import Namespace
 
+from lab.vehicles.manoeuvres import EXAMPLES, MANOEUVRES
 from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Fault, suggestion
+
+CONTROL = ROOT / "lab" / "vehicles" / "control.py"
+# Each example that is here.
+NAMES = {"car": "four wheels, a chassis and a driver", "suspended": "a quarter car on its wheel"}
+NAMES = NAMES if (EXAMPLES / "package.py").exists() else {}
+NAMES |= {"control": "the wheel: linearization, regulator, optimal control"} if CONTROL.exists() else {}
+ABOUT = [f"  {name:10s}{about}" for name, about in NAMES.items()]
+if "car" in NAMES:
+    ABOUT += ["", "The car's MANOEUVRE is one of", ""]
+    ABOUT += [f"  {name:10s}{run.title}" for name, run in MANOEUVRES.items()]
+__doc__ = "\n".join([__doc__, "", *ABOUT])
 
 
-def usage(words: list[str]) -> str:
-    from lab.vehicles import options
-
-    return options.usage(*words)
-
-
-def reads(words: list[str]) -> list[str]:
-    from lab.vehicles import options
-
-    options.asked(*words)
-    return words
+def one_of(names: dict[str, str], what: str, typed: str) -> str:
+    """A name; Fault if there is none such."""
+    if typed not in names:
+        there = f"there are {', '.join(names)}." if names else "examples/vehicles and control.py are not here."
+        raise Fault(f'there is no {what} "{typed}"; {there}{suggestion(typed, dict.fromkeys(names, ""))}')
+    return typed
 
 
-def needs(given: list[str]) -> list[str]:
-    return ["vehicles"] * (given[0] == "control")
+OPTIONS = {
+    "name": {"metavar": "NAME", "type": lambda typed: one_of(NAMES, "example", typed)},
+    "manoeuvre": {
+        "metavar": "MANOEUVRE",
+        "nargs": "?",
+        "type": lambda typed: one_of(dict.fromkeys(MANOEUVRES, ""), "manoeuvre", typed),
+        "help": "of the car; if not given, lane",
+    },
+}
 
 
-def main(given: list[str]) -> int:
+def needs(given: Namespace) -> list[str]:
+    if given.manoeuvre and given.name != "car":
+        raise Fault(f"{given.name} has no manoeuvres: leave {given.manoeuvre} out.")
+    return ["vehicles"] * (given.name == "control")
+
+
+def main(given: Namespace) -> int:
     build("release")
     with alone(ROOT / "results" / "examples"):
-        if given[0] == "control":
-            program = ROOT / "lab" / "vehicles" / "control.py"
-            return processes.status(
-                sys.executable, "-P", program, "build/release/wheel.fmu", "results/examples/control"
-            )
+        if given.name == "control":
+            words = CONTROL, "build/release/wheel.fmu", "results/examples/control"
+            return processes.status(sys.executable, "-P", *words)
         from lab.vehicles.example import main as run
 
-        return run(given)
+        return run(given.name, given.manoeuvre or "")

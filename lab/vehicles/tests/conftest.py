@@ -2,7 +2,7 @@
 
 import pytest
 
-from lab.vehicles.vehicle import Fmus, build_all
+from lab.vehicles.car import Fmus, build_all
 
 
 @pytest.fixture(scope="session")

@@ -1,63 +1,80 @@
-"""./scripts/example: its parameters, exit status and output, and all commands that a document prints."""
+"""./scripts/example: what it takes, what it leaves, and what it says where an example was deleted."""
 
 import re
-from collections.abc import Callable
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from support.bounds import beyond, within
+from support.checkout import copy_checkout
 from support.typed import asked
 
-from lab.vehicles import example, options
-from lab.vehicles.vehicle import Fmus
-from wheelfmu.fmu.paths import ROOT
-
-PAGES = (*(ROOT / "examples").rglob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md")
-TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
-PRINTED = {line.strip() for line in re.findall(r"\./scripts/example ([a-z]+\b(?!\|)[^`#\n]*)", TEXT)} - {"control"}
-FAILS = {
-    "suspended follow=0 exchange=held h=5ms": "Failed: a closed form does not hold.",
-    "car manoeuvre=step v=22": r"Failed: f. ended the run at t = .*lifted off",
-    "car mu_max=0.1": "Failed: .. ended the run at t = .*friction coefficient",
-    "car manoeuvre=straight k_h=20e3 c_h=500": "Failed: a closed form does not hold.",
-}
-RUNS = sorted(line for line in PRINTED - {*FAILS} if "--help" not in line)
+from lab.vehicles import example
+from lab.vehicles.car import Fmus
+from lab.vehicles.commands.example import NAMES
+from lab.vehicles.manoeuvres import MANOEUVRES
 
 
-@pytest.mark.parametrize("name", options.VEHICLES)
-def test_help_lists_every_parameter_and_all_of_them_are_taken(name: str):
-    listed = asked(ROOT, f"example {name} --help").stdout
-    for parameter in options.takes(name):
-        assert f"\n  {parameter} " in listed
-        assert options.value(name, parameter, "1") == 1.0
-
-
-@pytest.fixture
-def run(fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> Callable:
-    """run(line): exit status and output of the example, which writes into tmp_path/NAME."""
+def test_it_drives_the_car_prints_its_closed_forms_and_leaves_table_picture_and_package(
+    fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+):
     monkeypatch.setattr(example, "RESULTS", tmp_path)
+    monkeypatch.setattr(example, "BUILT", fmus["chassis"].parent)
     monkeypatch.setattr(example, "build_all", lambda: fmus)
-
-    def call(line: str) -> tuple[int, str]:
-        return example.main(line.split()), "".join(capsys.readouterr())
-
-    return call
-
-
-@pytest.mark.parametrize("line", RUNS)
-def test_every_command_that_a_document_prints_succeeds_and_leaves_all_that_it_names(run, tmp_path: Path, line: str):
-    status, output = run(line)
-    assert status == 0 and "Failed" not in output, output
-    name = line.split()[0]
-    kept, models = {p.name for p in (tmp_path / name).iterdir()}, set(options.system(name)["fmus"].values())
-    package = Path(options.VEHICLES[name]["system"]).stem
-    assert kept == {f"{name}.csv", f"{name}.png", f"{package}.ssp", *(f"{model}.fmu" for model in models)}
+    assert example.main("car", "step") == 0
+    printed = capsys.readouterr().out
+    assert "lateral force of the front axle: 26" in printed
+    left = {p.name for p in (tmp_path / "car").iterdir()}
+    assert left == {"car.csv", "car.png", "car.ssp", "chassis.fmu", "driver.fmu"}
+    monkeypatch.setitem(MANOEUVRES, "step", MANOEUVRES["step"].changed(v=22.0))
+    assert example.main("car", "step") == 1 and re.match(r"\w\w ended the run .* lifted off", capsys.readouterr().err)
 
 
-@pytest.mark.parametrize("line", FAILS)
-def test_a_run_that_ends_early_or_is_beyond_a_closed_forms_bound_has_failed(run, line: str):
-    status, output = run(line)
-    assert status == 1 and re.search(FAILS[line], output), output
+def test_the_quarter_car_is_launched_as_its_closed_form_says(
+    fmus: Fmus, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+):
+    """Partner: a wheel whose rotation takes no moment."""
+    monkeypatch.setattr(example, "RESULTS", tmp_path)
+    monkeypatch.setattr(example, "BUILT", fmus["chassis"].parent)
+    monkeypatch.setattr(example, "build_all", lambda: fmus)
+    found = []
+    for J_z in (example.J_Z, 0.0):
+        monkeypatch.setattr(example, "J_Z", J_z)
+        assert example.main("suspended") == 0
+        found.append([float(x) for x in re.findall(r"(?:: |form: )([\d.]+)", capsys.readouterr().out)])
+    within(abs(found[0][0] / found[0][1] - 1), 2e-3, "acceleration, relative")
+    beyond(abs(found[1][0] / found[1][1] - 1), 2e-2, "acceleration without J_z, relative")
+    left = {p.name for p in (tmp_path / "suspended").iterdir()}
+    assert left == {"suspended.csv", "suspended.png", "quarter_car.ssp", "quarter_car.fmu"}
 
 
-def test_a_model_refuses_its_parameters_in_its_own_words(run):
-    assert run("car path=2") == (1, "driver: path must be 0 or 1.\n")
+def test_of_what_was_deleted_the_help_has_nothing_and_the_command_one_sentence(tmp_path: Path):
+    copy_checkout(tmp_path)
+
+    def printed(*words: str) -> str:
+        done = subprocess.run(
+            [sys.executable, "-S", "-B", tmp_path / "tools", "example", *words], capture_output=True, text=True
+        )
+        assert done.returncode == (0 if "--help" in words else 2)
+        return done.stdout + done.stderr
+
+    assert all(f"\n  {name} " in printed("--help") for name in NAMES)
+    (tmp_path / "lab" / "vehicles" / "control.py").unlink()
+    assert "control" not in printed("--help").split("NAME is one of")[1]
+    assert printed("control").startswith('example: argument NAME: there is no example "control"; there are car')
+    (tmp_path / "examples" / "vehicles" / "package.py").unlink()
+    assert "are not here" in printed("car")
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    {
+        "example cars": "Do you mean car?",
+        "example car lanes": "Do you mean lane?",
+        "example control lane": "no manoeuvres",
+    }.items(),
+)
+def test_a_typing_error_is_refused_in_one_sentence(tmp_path: Path, line: str, words: str):
+    done = asked(tmp_path, line)
+    assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1
