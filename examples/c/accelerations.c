@@ -11,7 +11,7 @@ static void print(const char* name, const WheelScene* scene, const double* y) {
 }
 
 int main(void) {
-  WheelParameters wheel = {.m = 20, .r_0 = 0.3, .r = 0.05, .J_x = 0.9, .J_y = 0.9, .J_z = 1.8, .g = 9.81, .s = 0.03};
+  WheelParameters wheel = {.m = 20, .r_0 = 0.3, .r = 0.05, .J_x = 0.9, .J_y = 0.9, .J_z = 1.8, .g_n = 9.81, .s = 0.03};
   WheelMotion motion = {.psi = 1.570796, .theta = 1.308997, .phi_dot = -2};
   WheelLoad drive = {.M = {0, 0, -5}};
   double y[WHEEL_SLIDING_STATES];

@@ -64,7 +64,7 @@ if len(sys.argv) > 1:
 
     t, x, y, _, turn, *rest = np.transpose(path)
     axes = plt.subplots(3, 1, figsize=(7, 7), layout="constrained")[1]
-    axes[0].plot(x, y, label="body")
+    axes[0].plot(x, y, "k", label="body")
     for i, name in enumerate(("front left", "front right", "rear left", "rear right")):
         axes[0].plot(rest[4 + i], rest[8 + i], lw=0.7, label=name)
         axes[2].plot(t, rest[i], label=name)

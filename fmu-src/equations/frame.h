@@ -151,7 +151,7 @@ static inline void set_dynamics(const WheelScene* scene, const Frame* f, const A
   out->phi_ddot = a->omega_3_dot - out->psi_ddot * f->cos_theta + f->omega_1 * f->omega_2;
   out->X_O_ddot = (out->lambda[0] + scene->load.F[0]) / w->m + w->g_X;
   out->Y_O_ddot = (out->lambda[1] + scene->load.F[1]) / w->m + w->g_Y;
-  out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g;
+  out->Z_O_ddot = (out->lambda[2] + scene->load.F[2]) / w->m - w->g_n;
 }
 
 #endif

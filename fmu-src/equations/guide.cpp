@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "constant.hpp"
 #include "wheel_equations.h"
 
 namespace {
@@ -17,9 +18,9 @@ namespace {
 using Vector = Eigen::Vector3d;  // u_x, u_y, omega_3
 using Matrix = Eigen::Matrix3d;
 
-constexpr double ramp = 1e-3;  // s
-// Of the largest speed of a ramp: a step's error, and the width of a law that has none, below which a speed is zero.
-constexpr double exactness = 1e-12, narrow = 1e-13;
+CONSTANT(double, ramp, 1e-3, "s", "a held wheel that would be held over so long a ramp stays held");
+CONSTANT(double, exactness, 1e-12, "of the largest speed", "error of a step along a ramp");
+CONSTANT(double, narrow, 1e-13, "of the largest speed", "width of a law that has none: a smaller speed is zero");
 
 struct Ramp {
   double m, J, rho;             // kg, kg m2 about the axle, m
@@ -92,7 +93,7 @@ int step(const Ramp& r, double h, bool held, double scale, Vector& y) {
 // Whether slip or spin pass more of their bend at zero in a step than its points can follow: there some widths, farther
 // off as much more as they keep away.
 bool leaps(const Ramp& r, const Vector& y, const Vector& next) {
-  constexpr double widths = 4;
+  CONSTANT(double, widths, 4, "widths", "the most of a bend at zero that the points of a step can follow");
   const double u = y.head<2>().norm(), u_next = next.head<2>().norm();
   const double away = y[2] * next[2] > 0 ? std::fmin(std::fabs(y[2]), std::fabs(next[2])) : 0;
   return std::fabs(next[2] - y[2]) > widths * r.width_omega + away ||
@@ -103,7 +104,7 @@ bool leaps(const Ramp& r, const Vector& y, const Vector& next) {
 //   end at its end;
 //   are short enough where friction bends: there the least is taken as it is.
 void follow(const Ramp& r, double holds, bool held, double scale, Vector& y) {
-  constexpr double least = 1e-14;
+  CONSTANT(double, least, 1e-14, "of the ramp", "a shorter step would move nothing but rounding");
   double reached = 0, h = 1;
   while (reached < 1) {
     h = std::fmin(h, 1 - reached);
@@ -161,7 +162,7 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
     r.width_u = narrow * scale;
     if (!regularized) r.width_omega = narrow * scale / rho;
     follow(r, holds, held && std::fabs(turning(r, y)) <= holds, scale, y);
-    constexpr double few = 40;  // widths, within which a speed counts as zero
+    CONSTANT(double, few, 40, "widths", "where friction holds a speed at zero, it ends so close to it");
     if (y.head<2>().norm() < few * r.width_u) y[0] = y[1] = 0;
     if (!regularized && std::fabs(y[2]) < few * r.width_omega) y[2] = 0;
   } else if (slides) {

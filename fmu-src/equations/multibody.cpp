@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "axle_law.h"
+#include "constant.hpp"
 #include "paper_matrices.hpp"
 
 namespace wheel::paper {
@@ -82,7 +83,7 @@ Matrix63 B_tilde(const Multibody& s, const AxleLaw& law) {
 Vector6 F(const Multibody& s, const WheelLoad& load) {
   const Matrix3 phi = rotation_z(s.attitude.sin_phi, s.attitude.cos_phi);
   Vector6 F;
-  F << Vector3(load.F) + s.wheel.m * Vector3(s.wheel.g_X, s.wheel.g_Y, -s.wheel.g), phi.transpose() * Vector3(load.M);
+  F << Vector3(load.F) + s.wheel.m * Vector3(s.wheel.g_X, s.wheel.g_Y, -s.wheel.g_n), phi.transpose() * Vector3(load.M);
   return F;
 }
 
@@ -203,8 +204,8 @@ double derivative(const WheelScene* scene, const double* y, double* y_dot) {
   y_dot[WHEEL_CHI] = y[WHEEL_SLIP] == 0 ? 0 : turn / y[WHEEL_SLIP] - q_dot[psi];
   // Without friction the determinant is -sin(theta) times positive terms.
   const bool has_room = scene->guided || solution.determinant < 0;
-  constexpr double usual = 100;  // weights
-  if (has_room && N >= 0 && N < usual * scene->wheel.m * scene->wheel.g) return N;
+  CONSTANT(double, usual, 100, "weights", "a larger normal force may be that of a wheel that jams");
+  if (has_room && N >= 0 && N < usual * scene->wheel.m * scene->wheel.g_n) return N;
   return solve(now, true).unknowns[lambda_3] / N < WHEEL_LEAST_ROOM ? INFINITY : N;
 }
 

@@ -15,7 +15,7 @@ double wheel_energy(const WheelParameters* wheel, const WheelKinematics* k) {
   double rotation =
       wheel->J_x * omega_x * omega_x + wheel->J_y * omega_y * omega_y + wheel->J_z * k->omega_z * k->omega_z;
   return 0.5 * (wheel->m * v_squared + rotation) +
-         wheel->m * (wheel->g * k->Z_O - wheel->g_X * k->X_O - wheel->g_Y * k->Y_O);
+         wheel->m * (wheel->g_n * k->Z_O - wheel->g_X * k->X_O - wheel->g_Y * k->Y_O);
 }
 
 /* The contact lies r_0 cos(theta) to the right of O: across e1, on the side of (sin(psi), -cos(psi)). */

@@ -23,34 +23,39 @@ struct Attitude {
   double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
 };
 
+// By rows.
+inline Matrix3 matrix(const double (&rows)[3][3]) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows[0]);
+}
+
 // clang-format off: matrices stand as the paper prints them.
 
 // (3): rotation about z by an angle of the given sine and cosine; [psi] and [phi].
 inline Matrix3 rotation_z(double sine, double cosine) {
-  return Matrix3{{cosine, -sine,   0},
+  return matrix({{cosine, -sine,   0},
                  {sine,    cosine, 0},
-                 {0,       0,      1}};
+                 {0,       0,      1}});
 }
 
 // (3): [theta], rotation about x.
 inline Matrix3 rotation_x(double sine, double cosine) {
-  return Matrix3{{1, 0,       0},
+  return matrix({{1, 0,       0},
                  {0, cosine, -sine},
-                 {0, sine,    cosine}};
+                 {0, sine,    cosine}});
 }
 
 // (5): generator of rotations about z, [U_psi] = [U_phi].
 inline Matrix3 U_z() {
-  return Matrix3{{0, -1, 0},
+  return matrix({{0, -1, 0},
                  {1,  0, 0},
-                 {0,  0, 0}};
+                 {0,  0, 0}});
 }
 
 // (5), misprint U_theta mended: the 1 of row 3 stands in column 2.
 inline Matrix3 U_theta() {
-  return Matrix3{{0, 0,  0},
+  return matrix({{0, 0,  0},
                  {0, 0, -1},
-                 {0, 1,  0}};
+                 {0, 1,  0}});
 }
 
 // (4): [A] = [psi][theta][phi], body to fixed axes.
@@ -73,21 +78,21 @@ inline Matrix3 A_dot(const Matrix3& A, const Attitude& a) {
 
 // (8): omega in body axes = [Q] beta_dot.
 inline Matrix3 Q(const Attitude& a) {
-  return Matrix3{{a.sin_theta * a.sin_phi,  a.cos_phi, 0},
+  return matrix({{a.sin_theta * a.sin_phi,  a.cos_phi, 0},
                  {a.sin_theta * a.cos_phi, -a.sin_phi, 0},
-                 {a.cos_theta,              0,         1}};
+                 {a.cos_theta,              0,         1}});
 }
 
 // (9), misprint Q_theta mended: row 3 is -sin(theta) 0 0.
 inline Matrix3 Q_theta(const Attitude& a) {
-  return Matrix3{{ a.cos_theta * a.sin_phi, 0, 0},
+  return matrix({{ a.cos_theta * a.sin_phi, 0, 0},
                  { a.cos_theta * a.cos_phi, 0, 0},
-                 {-a.sin_theta,             0, 0}};
+                 {-a.sin_theta,             0, 0}});
 }
 inline Matrix3 Q_phi(const Attitude& a) {
-  return Matrix3{{ a.sin_theta * a.cos_phi, -a.sin_phi, 0},
+  return matrix({{ a.sin_theta * a.cos_phi, -a.sin_phi, 0},
                  {-a.sin_theta * a.sin_phi, -a.cos_phi, 0},
-                 { 0,                        0,         0}};
+                 { 0,                        0,         0}});
 }
 
 // (10)
@@ -96,23 +101,23 @@ inline Matrix3 Q_dot(const Attitude& a) { return a.beta_dot[1] * Q_theta(a) + a.
 // (11): cross-product matrix of the vector from O to the contact, body axes.
 inline Matrix3 r(const WheelParameters& w, const Attitude& a) {
   const double eta = w.r * a.cos_theta, rho = w.r_0 + w.r * a.sin_theta;
-  return Matrix3{{ 0,                eta,             -rho * a.cos_phi},
+  return matrix({{ 0,                eta,             -rho * a.cos_phi},
                  {-eta,              0,                rho * a.sin_phi},
-                 { rho * a.cos_phi, -rho * a.sin_phi,  0}};
+                 { rho * a.cos_phi, -rho * a.sin_phi,  0}});
 }
 
 // (12)
 inline Matrix3 r_theta(const WheelParameters& w, const Attitude& a) {
   const double s = w.r * a.sin_theta, c = w.r * a.cos_theta;
-  return Matrix3{{0,             -s,             -c * a.cos_phi},
+  return matrix({{0,             -s,             -c * a.cos_phi},
                  {s,              0,              c * a.sin_phi},
-                 {c * a.cos_phi, -c * a.sin_phi,  0}};
+                 {c * a.cos_phi, -c * a.sin_phi,  0}});
 }
 inline Matrix3 r_phi(const WheelParameters& w, const Attitude& a) {
   const double rho = w.r_0 + w.r * a.sin_theta;
-  return Matrix3{{ 0,                0,               rho * a.sin_phi},
+  return matrix({{ 0,                0,               rho * a.sin_phi},
                  { 0,                0,               rho * a.cos_phi},
-                 {-rho * a.sin_phi, -rho * a.cos_phi, 0}};
+                 {-rho * a.sin_phi, -rho * a.cos_phi, 0}});
 }
 
 // (13)

@@ -37,8 +37,8 @@ INLINED Drift drift_of(const WheelScene* scene, const Inertia* I, const Frame* f
   road_force(scene, f, &F_1, &F_h);
   return (Drift){
       .k_1 = w->m * b_1 - F_1,
-      .k_2 = w->m * (b_2 + w->g * f->sin_theta) - (f->cos_theta * F_h + f->sin_theta * F_Z),
-      .k_3 = w->m * (b_3 + w->g * f->cos_theta) - (f->cos_theta * F_Z - f->sin_theta * F_h),
+      .k_2 = w->m * (b_2 + w->g_n * f->sin_theta) - (f->cos_theta * F_h + f->sin_theta * F_Z),
+      .k_3 = w->m * (b_3 + w->g_n * f->cos_theta) - (f->cos_theta * F_Z - f->sin_theta * F_h),
       .M = moment_of(scene, I, f),
   };
 }
@@ -106,7 +106,7 @@ INLINED Accelerations move_guided(const WheelScene* scene, const Frame* f, const
   const WheelParameters* w = &scene->wheel;
   double omega_1_dot = scene->load.guide[1], omega_2_dot = guided_rate(f, scene->load.guide[0]);
   double rise = w->r_0 * (f->cos_theta * omega_1_dot - f->sin_theta * (f->omega_1 * f->omega_1)); /* m/s2 */
-  double N = w->m * (w->g + rise) - scene->load.F[2];
+  double N = w->m * (w->g_n + rise) - scene->load.F[2];
   double h_3 = d->M.M_3 + f->rho * (d->k_1 + w->m * (f->eta * omega_2_dot));
   if (!(N > 0 || scene->ground == WHEEL_GROUND_PRESSES)) law.lever = 0;
   double tau = law.held ? -h_3 : axle_moment_of(&law, N);

@@ -25,7 +25,7 @@ WheelScene wheel_scene(const WheelParameters* wheel, const WheelLoad* load, Whee
 }
 
 void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction) {
-  wheel->g = g * cos(slope);
+  wheel->g_n = g * cos(slope);
   wheel->g_X = -g * sin(slope) * cos(direction);
   wheel->g_Y = -g * sin(slope) * sin(direction);
 }

@@ -83,7 +83,7 @@ INLINED Body body_of(const WheelScene* scene, const double* y, int guided) {
   a->guide[0] = load->guide[1];
   a->guide[1] = guided_rate(f, load->guide[0]);
   a->M = moment_of(scene, &b.inertia, f);
-  a->N_still = w->m * (w->g - w->r_0 * f->sin_theta * omega_1_2) - load->F[2];
+  a->N_still = w->m * (w->g_n - w->r_0 * f->sin_theta * omega_1_2) - load->F[2];
   a->a_x = F_x * b.per_mass + f->omega_1 * (w->r * f->sin_theta * f->omega_2 + f->eta * f->omega_3 - f->psi_dot * b.h);
   a->a_y = F_y * b.per_mass + b.l * omega_1_2 - f->psi_dot * f->v_1;
   b.kappa = kappa_of(&scene->friction, f->omega_3);

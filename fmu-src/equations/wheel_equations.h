@@ -30,14 +30,14 @@ typedef struct WheelParameters {
   double m;             /* kg, > 0 */
   double r_0, r;        /* m; radius of the ring of tube centres > 0, radius of the tube >= 0 */
   double J_x, J_y, J_z; /* kg m2, principal central moments, z is the axle */
-  double g;             /* m/s2, >= 0, gravity across the road: against Z */
+  double g_n;           /* m/s2, >= 0, gravity across the road, normal to it: against Z */
   double s;             /* m, >= 0; rolling resistance: its moment is at most s N */
   double g_X, g_Y;      /* m/s2, gravity along the road: zero where it is level */
 } WheelParameters;
 
 /* Puts the wheel on a road that rises by `slope` (rad, 0 <= slope < pi/2) towards `direction` (rad in the X-Y plane,
  * from X to Y). The axes stay the road's, Z across it, and the weight tilts: g (the whole of gravity, m/s2) is
- * distributed to the wheel's g, g_X, g_Y. */
+ * distributed to the wheel's g_n, g_X, g_Y. */
 void wheel_set_slope(WheelParameters* wheel, double g, double slope, double direction);
 
 /* What acts on the wheel besides weight and ground: the external column {F} of (15), and a brake. */

@@ -46,8 +46,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
       if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]) ||
           (values[k] != 0 && is_idle(i.wheel, inputs[k])))
         return i.log(Topic::error,
-                     "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, of a carrier's rate "
-                     "only where it turns: guided, by co-simulation.",
+                     "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, and those of a "
+                     "carrier's rate need guided = true and co-simulation.",
                      orders[k], values[k], wheel::row_of(inputs[k]).name, wheel::max_order);
     for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, inputs[k], values[k], orders[k]);
     return fmi2OK;

@@ -64,7 +64,7 @@ bool check_value(Instance& i, unsigned variable, double value) {
   if (passed.relation)
     return refuse("%s: %s = %s: it must be %s %s; the value stays %s.", passed.relation, passed.value);
   if (value != 0 && is_idle(i.wheel, variable))
-    return refuse("%s: %s = %s: only the carrier of a guided wheel turns, by co-simulation; the value stays %s.");
+    return refuse("%s: %s = %s: this input needs guided = true and co-simulation; the value stays %s.");
   if (variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.sliding)
     return refuse("%s: %s = %s: whether the wheel can slide is decided at the start; the value stays %s.");
   return true;

@@ -1,5 +1,10 @@
 // Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
 // form, non-spinning frame; path of O in fixed axes as X_O + i Y_O.
+//
+// `build`, once for each motion: `is_steady` tries the start for a circle or a straight line; if it is neither,
+// `follow` steps past T1 and T2, and each step goes onto the track. `unfold` then takes the half and tests it. Both
+// rest on `maps`: the rates at the image of a state are the image of its rates. `begin`, once for each run: heading,
+// roll angle and place of the start, and whether the right-hand side depends on them.
 #include "orbit.hpp"
 
 #include <algorithm>
@@ -20,6 +25,31 @@ CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may be
 CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
 CONSTANT(double, largest_break, 0.1, "errors", "within the longest step, by what breaks the symmetry: rounding too");
 CONSTANT(int, samples, 8, "instants", "of a half, at which its symmetry is tested");
+
+// A small lean of a wheel with omega_1 = 0, in which omega_2 and omega_3 follow theta as they do along a motion.
+struct Lean {
+  double omega_2, omega_3;  // 1/s, their changes by that of theta
+  double stiffness;         // 1/s2: omega_1_dot = -stiffness * lean
+  bool indifferent;         // omega_1_dot = 0 to either side
+};
+
+Lean lean_of(const solver::Problem& problem, const double* y0) {
+  CONSTANT(double, lean_tried, 1e-4, "of sin(theta)", "small against the bend of the rates, large against rounding");
+  double y[Track::states], along[Track::states], rate[Track::states];
+  std::copy_n(y0, Track::states, y);
+  y[WHEEL_OMEGA_1] = 1;
+  problem.derivative(problem.owner, 0, y, along);
+  y[WHEEL_OMEGA_1] = 0;
+  const auto tilting = [&](double by) {
+    y[WHEEL_THETA] = y0[WHEEL_THETA] + by;
+    y[WHEEL_OMEGA_2] = y0[WHEEL_OMEGA_2] + by * along[WHEEL_OMEGA_2];
+    y[WHEEL_OMEGA_3] = y0[WHEEL_OMEGA_3] + by * along[WHEEL_OMEGA_3];
+    problem.derivative(problem.owner, 0, y, rate);
+    return rate[WHEEL_OMEGA_1];
+  };
+  const double h = lean_tried * std::sin(y0[WHEEL_THETA]), ahead = tilting(h), behind = tilting(-h);
+  return {along[WHEEL_OMEGA_2], along[WHEEL_OMEGA_3], (behind - ahead) / (2 * h), ahead == 0 && behind == 0};
+}
 
 }  // namespace
 
@@ -44,12 +74,12 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-bool Orbit::enter(const Motion& motion, bool known, solver::Solver& solver) {
+bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
   if (!known || result_ == Result::refused) build(motion, solver);
   return result_ != Result::refused && begin(motion);
 }
 
-void Orbit::build(const Motion& motion, solver::Solver& solver) {
+void Orbit::build(const FreeMotion& motion, solver::Solver& solver) {
   const double tolerance = motion.tolerance;
   solver::Problem problem = motion.problem;
   double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
@@ -63,7 +93,7 @@ void Orbit::build(const Motion& motion, solver::Solver& solver) {
   counters_ = solver.counters();
 }
 
-bool Orbit::begin(const Motion& motion) {
+bool Orbit::begin(const FreeMotion& motion) {
   const double* y0 = motion.y0;
   latest_half_ = {};
   start_.psi_sum = y0[WHEEL_PSI];
@@ -83,7 +113,7 @@ bool Orbit::begin(const Motion& motion) {
 //   the swing between both is no larger than errors: refused;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0,
+Orbit::Result Orbit::follow(const solver::Problem& problem, FreeMotion::OnEvent on_event, const double* y0,
                             solver::Solver& solver) {
   double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, y0, weights);
@@ -112,7 +142,7 @@ Orbit::Result Orbit::follow(const solver::Problem& problem, Motion::OnEvent on_e
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver) {
+solver::Outcome Orbit::step(const solver::Problem& problem, FreeMotion::OnEvent on_event, solver::Solver& solver) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;
@@ -156,41 +186,25 @@ bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
 }
 
 // Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
-// and no event occurs; or it leans without consequence.
-// With omega_2 and omega_3 following theta as they do along a motion, omega_1_dot = -stiffness * lean. Then the initial
-// state repeats for ever.
+// and no event occurs; or it leans without consequence. Then the initial state repeats for ever.
 bool Orbit::is_steady(const solver::Problem& problem, const double* y0) {
-  CONSTANT(double, lean_tried, 1e-4, "of sin(theta)", "small against the bend of the rates, large against rounding");
   CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
   CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
-  const double h = lean_tried * std::sin(y0[WHEEL_THETA]), slowest = 0.5 / problem.longest_step;
-  double y[states], rate[states], along[states], ahead[states], behind[states], weights[states];
+  const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 0.5 / problem.longest_step;
+  double rate[states], weights[states];
   problem.derivative(problem.owner, 0, y0, rate);
   problem.weights(problem.owner, problem.share, y0, weights);
-  if (!(std::fabs(y0[WHEEL_OMEGA_1]) * weights[WHEEL_OMEGA_1] < 1)) return false;
+  if (!(std::fabs(omega_1) * weights[WHEEL_OMEGA_1] < 1)) return false;
   for (int i = 0; i < problem.watched_count; ++i)
     if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return false;
-  std::copy_n(y0, states, y);
-  y[WHEEL_OMEGA_1] = 1;
-  problem.derivative(problem.owner, 0, y, along);
-  y[WHEEL_OMEGA_1] = 0;
-  const auto lean = [&](double by, double* out) {
-    y[WHEEL_THETA] = y0[WHEEL_THETA] + by;
-    y[WHEEL_OMEGA_2] = y0[WHEEL_OMEGA_2] + by * along[WHEEL_OMEGA_2];
-    y[WHEEL_OMEGA_3] = y0[WHEEL_OMEGA_3] + by * along[WHEEL_OMEGA_3];
-    problem.derivative(problem.owner, 0, y, out);
-  };
-  lean(h, ahead);
-  lean(-h, behind);
-  const bool indifferent =
-      y0[WHEEL_OMEGA_1] == 0 && rate[WHEEL_OMEGA_1] == 0 && ahead[WHEEL_OMEGA_1] == 0 && behind[WHEEL_OMEGA_1] == 0;
-  if (indifferent) return keep_steady(problem, y0, rate, problem.longest_step);
-  const double stiffness = (behind[WHEEL_OMEGA_1] - ahead[WHEEL_OMEGA_1]) / (2 * h);
-  if (!(stiffness > least_stiffness * slowest * slowest)) return false;
-  const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / stiffness + std::fabs(y0[WHEEL_OMEGA_1]) / std::sqrt(stiffness);
-  const double most_weight =
-      std::fmax(weights[WHEEL_THETA], std::fmax(std::fabs(along[WHEEL_OMEGA_2]) * weights[WHEEL_OMEGA_2],
-                                                std::fabs(along[WHEEL_OMEGA_3]) * weights[WHEEL_OMEGA_3]));
+  const Lean lean = lean_of(problem, y0);
+  if (omega_1 == 0 && rate[WHEEL_OMEGA_1] == 0 && lean.indifferent)
+    return keep_steady(problem, y0, rate, problem.longest_step);
+  if (!(lean.stiffness > least_stiffness * slowest * slowest)) return false;
+  const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / lean.stiffness + std::fabs(omega_1) / std::sqrt(lean.stiffness);
+  const double most_weight = std::fmax(
+      weights[WHEEL_THETA],
+      std::fmax(std::fabs(lean.omega_2) * weights[WHEEL_OMEGA_2], std::fabs(lean.omega_3) * weights[WHEEL_OMEGA_3]));
   if (!(swing * most_weight < largest_steady)) return false;
   return keep_steady(problem, y0, rate, std::fmin(problem.longest_step, piece / std::fabs(rate[WHEEL_PSI])));
 }

@@ -53,7 +53,7 @@ class Track {
 };
 
 // A motion to be unfolded: a problem of the reduced form of a wheel, its start, and how far it may be read.
-struct Motion {
+struct FreeMotion {
   // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be unfolded.
   using OnEvent = solver::Consequence (*)(void* owner, int event, double t, double* y);
 
@@ -78,7 +78,7 @@ class Orbit {
   // start. The solver has to be started anew before anything else is asked of it. The integrated motion is a function
   // of problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
   // heading. False where the motion is refused, or the right-hand side depends on heading, roll angle or place.
-  bool enter(const Motion& motion, bool known, solver::Solver& solver);
+  bool enter(const FreeMotion& motion, bool known, solver::Solver& solver);
   void leave() { until_ = nowhere; }
 
   // (0 <= t <= until()) => y
@@ -117,14 +117,14 @@ class Orbit {
   };
 
   // building.cpp: `build` integrates, `begin` places the start
-  void build(const Motion& motion, solver::Solver& solver);
-  bool begin(const Motion& motion);
+  void build(const FreeMotion& motion, solver::Solver& solver);
+  bool begin(const FreeMotion& motion);
   template <class Map>
   bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;
   bool is_steady(const solver::Problem& problem, const double* y0);
   bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
-  Result follow(const solver::Problem& problem, Motion::OnEvent on_event, const double* y0, solver::Solver& solver);
-  solver::Outcome step(const solver::Problem& problem, Motion::OnEvent on_event, solver::Solver& solver);
+  Result follow(const solver::Problem& problem, FreeMotion::OnEvent on_event, const double* y0, solver::Solver& solver);
+  solver::Outcome step(const solver::Problem& problem, FreeMotion::OnEvent on_event, solver::Solver& solver);
   static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
   bool unfold(const solver::Problem& problem, Result kind);
   bool is_mirrored(const solver::Problem& problem, double since) const;

@@ -140,7 +140,7 @@ double Collocation::sweep(const Problem& problem, const double* weights, const N
     Column residual = f.col(state) - before.col(state);
     if (settling.speed != Settling::none) residual = speeds.cwiseProduct(residual);
     const Column settled = before.col(state) - newton.matrix.solve(residual);
-    f += (settled - f.col(state)) * newton.others;
+    if (settling.speed == Settling::none) f += (settled - f.col(state)) * newton.others;
     f.col(state) = settled;
   };
   if (problem.steep) settle(*problem.steep, newtons.steep);

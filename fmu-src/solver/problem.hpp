@@ -29,8 +29,8 @@ struct Watched {
 
 // A state that settles at once where its rate vanishes, times y[speed] if there is a speed: the rate itself falls
 // steeply with the state, or it is turning / y[speed] + ... and the speed may be small.
-// (t, y, values of the state) => slopes of the rate, or of the turning, by the state; `others`, zeros before: by how
-// much the rate of each other state changes with this one's.
+// (t, y, values of the state) => slopes of the rate, or of the turning, by the state; `others`, zeros before, without a
+// speed: by how much the rate of each other state changes with this one's.
 struct Settling {
   static constexpr int none = -1;
   int state, speed;

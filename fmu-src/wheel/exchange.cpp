@@ -17,11 +17,14 @@ CONSTANT(double, distance, 1e-12, "1", "added to every indicator: one at rest at
 CONSTANT(double, soon, 1e-7, "time scales", "an event so close ahead has happened: some solvers stop short of it");
 
 // In the order of x: its variables, and the states of y to which they belong.
-constexpr unsigned state_variables[] = {variable::X_O, variable::Y_O,       variable::psi,     variable::theta,
-                                        variable::phi, variable::theta_dot, variable::psi_dot, variable::omega_z};
-constexpr int states_of_y[] = {WHEEL_X_O, WHEEL_Y_O,     WHEEL_PSI,     WHEEL_THETA,
-                               WHEEL_PHI, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3};
-static_assert(std::size(state_variables) == state_count && std::size(states_of_y) == state_count);
+constexpr struct {
+  unsigned variable;
+  int in_y;
+} states_of_x[] = {{variable::X_O, WHEEL_X_O},         {variable::Y_O, WHEEL_Y_O},
+                   {variable::psi, WHEEL_PSI},         {variable::theta, WHEEL_THETA},
+                   {variable::phi, WHEEL_PHI},         {variable::theta_dot, WHEEL_OMEGA_1},
+                   {variable::psi_dot, WHEEL_OMEGA_2}, {variable::omega_z, WHEEL_OMEGA_3}};
+static_assert(std::size(states_of_x) == state_count);
 
 void keep_above_ground(double* x) {
   double& theta = x[WHEEL_EULER_THETA];
@@ -117,11 +120,12 @@ int indicator_count() {
 }
 
 int place_in_x(unsigned variable) {
-  const auto* found = std::find(std::begin(state_variables), std::end(state_variables), variable);
-  return found == std::end(state_variables) ? -1 : static_cast<int>(found - state_variables);
+  for (int i = 0; i < state_count; ++i)
+    if (states_of_x[i].variable == variable) return i;
+  return -1;
 }
 
-int place_in_y(int in_x) { return states_of_y[in_x]; }
+int place_in_y(int in_x) { return states_of_x[in_x].in_y; }
 
 void act_at_once(Wheel& w) {
   InForce& now = w.run.in_force;

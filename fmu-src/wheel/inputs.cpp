@@ -90,12 +90,11 @@ WheelLoad load_rate_of(const Polynomials& inputs, double tau) {
   return rate;
 }
 
-void Inputs::take_over(double t, const Polynomials& asked, bool guided) {
+void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
-  count = guided ? inputs_count : guide_input;
   std::memcpy(c, asked, sizeof c);
   loaded = varies = false;
-  guides = guided && is_guiding(c);
+  guides = is_guiding(c);
   for (const auto& polynomial : c) {
     loaded |= acts(polynomial, 0);
     varies |= acts(polynomial, 1);
@@ -105,7 +104,7 @@ void Inputs::take_over(double t, const Polynomials& asked, bool guided) {
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {
   const double tau = varies ? t - origin : 0;
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < inputs_count; ++i)
     if (!continues(c[i], tau, rounding, asked[i])) return true;
   return false;
 }

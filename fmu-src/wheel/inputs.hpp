@@ -35,14 +35,13 @@ Span span_of(const double (&c)[max_order + 1], double tau);
 struct Inputs {
   double origin = 0;  // s, clock of the run
   Polynomials c = {};
-  int count = guide_input;  // so many can act: all where a wheel carrier can turn the wheel
   // What follows from the polynomials.
   bool loaded = false;  // some input is not zero
   bool braked = false;  // the brake is in use: its capacity or one of its derivatives is not zero
   bool varies = false;  // some input depends on time
   bool guides = false;  // the carrier's rates or one of their derivatives are not zero
 
-  void take_over(double t, const Polynomials& asked, bool guided);
+  void take_over(double t, const Polynomials& asked);
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;

@@ -59,11 +59,11 @@ void set_road_and_inputs(const Setup& setup, const Road& road, double t, const P
   now.road = road;
   now.scene.wheel = setup.scene.wheel;
   now.scene.wheel.s = road.s;
-  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.scene.wheel.g, road.slope, road.slope_direction);
+  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.scene.wheel.g_n, road.slope, road.slope_direction);
   now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
   now.scene.ground = now.pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
   now.scene.guided = setup.scene.guided;
-  now.inputs.take_over(t, inputs, setup.steered());
+  now.inputs.take_over(t, inputs);
   set_load(inputs, now.inputs.guides, 0, now.scene.load);
 }
 

@@ -11,7 +11,7 @@ namespace wheel {
 namespace {
 
 // (t: s, clock of the run) => caller's time for messages: it is not found more exactly than to a nanosecond
-double instant_of(const Wheel& wheel, double t) {
+double shown_time(const Wheel& wheel, double t) {
   const double time = wheel.demand.start_time + t;
   return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
 }
@@ -30,27 +30,27 @@ Consequence pass_event(Wheel& wheel, Event event) {
 
 void observe(Wheel& wheel, Event event, double t) {
   bool& observed = wheel.run.observed[static_cast<int>(event)];
-  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", instant_of(wheel, t), row_of(event).observed);
+  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), row_of(event).observed);
   observed = true;
 }
 
 void log_changes(Wheel& wheel, const InForce& before, Event by) {
   Run& run = wheel.run;
-  const double instant = instant_of(wheel, run.t);
+  const double t = shown_time(wheel, run.t);
   const WheelFriction &old = before.scene.friction, &law = run.in_force.scene.friction;
   const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
   if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
     ++run.transitions;
     if (law.kind == WHEEL_HELD)
-      wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", instant);
+      wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", t);
     else
-      wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", instant,
+      wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", t,
                          old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
   }
   const bool slid = before.slides(), slides = run.in_force.slides();
   if (slides == slid && !(slides && by == Event::slip_ends)) return;
   ++run.transitions;
-  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", instant,
+  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", t,
                      !slides ? "stops sliding"
                      : slid  ? "slides in another direction"
                              : "starts to slide");
@@ -71,14 +71,14 @@ void look_at_grip(Wheel& wheel, double t) {
   if (exceeds)
     wheel.reporter.log(Topic::warning,
                        "t = %s s: mu_required = %s, more than a dry road gives; mu_max = 0 sets no limit.",
-                       instant_of(wheel, t), Digits{mu, 3});
+                       shown_time(wheel, t), Digits{mu, 3});
 }
 
 void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y) {
   InForce now = wheel.run.in_force;
   now.scene = ahead;
   if (now.slides() && margin_of(row_of(Event::jams), wheel.setup, now, wheel.run.t, y) < 0)
-    wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", instant_of(wheel, wheel.run.t),
+    wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
                        ending_of(now, Event::jams).text);
 }
 

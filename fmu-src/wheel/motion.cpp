@@ -99,7 +99,7 @@ bool enter_orbit(Wheel& w) {
   const Shape asked = shape_of(w.demand);
   const bool known = w.orbit_shape == asked;
   const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
-  const orbit::Motion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
+  const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
   const bool entered = orbit.enter(motion, known, w.solver);
   w.run.in_force = at_start;
   w.orbit_shape = asked;
@@ -160,8 +160,8 @@ Outcome step_to(Wheel& w, double t) {
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work) {
       w.failure =
-          "one call may take no more internal steps; use shorter communication steps; a coupling may diverge, or a "
-          "force, a brake or a regularized law be extreme";
+          "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
+          "extreme, or the communication step is too long";
       return Outcome::failed;
     }
     const long long before = solver.counters().rhs;

@@ -25,10 +25,11 @@ double power_of_two_below(double x) {
 void set_scales(Setup& setup, const WheelKinematics& start) {
   CONSTANT(double, longest, 0.6, "time scales",
            "at an unstable rest the error estimate is zero: steps would grow without limit");
+  CONSTANT(double, least_gravity, 1e-30, "of length times rate squared", "a smaller one has no part in the motion");
   const WheelParameters& wheel = setup.scene.wheel;
-  const double gravity = wheel.g, length = wheel.r_0 + wheel.r;
+  const double gravity = wheel.g_n, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
-  const bool matters = gravity > 1e-30 * length * rate * rate;
+  const bool matters = gravity > least_gravity * length * rate * rate;
   setup.length = length;
   setup.time_scale = matters ? std::sqrt(length / gravity) : rate > 0 ? 1 / rate : 1;
   setup.longest_step = longest * setup.time_scale;
@@ -96,7 +97,7 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   require(!exchanged || v[formulation] != int{multibody_formulation},
           "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
-          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; by "
+          "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; in "
           "co-simulation psi_dot_guide and theta_dot_guide turn it.",
           psi_dot_start, theta_dot_start);
   require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
@@ -106,8 +107,8 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
   require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
           mu_slide);
   sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchanged),
-                          "psi_dot_guide, theta_dot_guide = %s, %s rad/s: only the carrier of a guided wheel turns, by "
-                          "co-simulation; else they and their derivatives must be 0.",
+                          "psi_dot_guide, theta_dot_guide = %s, %s rad/s: these inputs need guided = true "
+                          "and co-simulation; otherwise they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
   return sound;
 }
@@ -128,7 +129,7 @@ Setup setup_of(const Demand& demand) {
   setup.scene.guided = v[guided] != 0;
   choose_equations(setup, demand);
   // clang-format off
-  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g = v[g],
+  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};
   // clang-format on
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));

@@ -18,6 +18,8 @@
 namespace wheel {
 namespace {
 
+CONSTANT(double, first_part, 1e-3, "of the scale", "a step in which an error of fourth order is that of rounding");
+
 // f at four places, in steps from x, and their weights: for the slope, exact for polynomials of degree four, and for a
 // sum of third and fourth differences, which shows a bend; about x, or to one side where a limit is near.
 struct Stencil {
@@ -100,7 +102,7 @@ struct Quotients {
     constexpr double finest = std::numeric_limits<double>::epsilon();
     CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
     bool done = false;
-    double part = 1e-3;
+    double part = first_part;
     while (part > (done ? finest : finest_first) && !settle(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
                           [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
@@ -189,7 +191,8 @@ bool take_at_instant(Wheel& w, unsigned known, Quotients& quotients) {
     if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
     return true;
   };
-  begins ? quotients.refine(place, size, now, move_to) : quotients.take(stencils[0], place, 1e-3 * size, now, move_to);
+  begins ? quotients.refine(place, size, now, move_to)
+         : quotients.take(stencils[0], place, first_part * size, now, move_to);
   quotients.complete();
   return true;
 }
@@ -214,8 +217,7 @@ void take_along_motion(Wheel& w, Quotients& quotients) {
   const WheelFormulation& formulation = formulation_of(setup, start.scene);
   const Rates rates = rates_of(setup, start.scene, start.y);
   const Inputs& inputs = w.run.in_force.inputs;
-  const bool goes_on = setup.steered() && w.demand.news != News::set;  // as the reading
-  WheelLoad rate = goes_on ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
+  WheelLoad rate = acts_on(w) ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
@@ -234,7 +236,7 @@ void take_along_motion(Wheel& w, Quotients& quotients) {
     return true;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  quotients.take(stencils[0], 0, pace > 0 ? 1e-3 / pace : 1, now, move_to);
+  quotients.take(stencils[0], 0, pace > 0 ? first_part / pace : 1, now, move_to);
   quotients.complete(tau_rate);
 }
 

@@ -81,10 +81,7 @@ InForce in_force_now(const Wheel& w, double* y) {
 Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solver)), transitions(w.run.transitions) {
   std::copy_n(state_now(w), max_states, y);
   std::copy_n(w.run.x, WHEEL_EULER_STATES, x);
-  // where nothing was set, without a copy of all that is in force; and a carrier still turns as in the last step
-  const News news = w.demand.news;
-  const bool goes_on = news == News::none || (news == News::stays && setup->steered());
-  scene = goes_on ? w.run.in_force.scene_at(w.run.t) : in_force_now(w, y).scene;
+  scene = acts_on(w) ? w.run.in_force.scene_at(w.run.t) : in_force_now(w, y).scene;
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 

@@ -1,6 +1,14 @@
 // One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
 // as far as it is known; and its run from the parameters to the end. Each function that changes a wheel names in its
 // header what it writes. The run has a clock, zero at the start, so that a start time of 1e9 s costs no digits.
+//
+// The other files of this folder, each below those that it needs:
+//   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
+//   setup, run                    what follows from the parameters; what is in force, and how far the run has come
+//   law, events                   how friction and contact are decided; the table of what can happen
+//   logbook, posed_problem        messages and counts of events; what the solver asks
+//   motion, exchange              one communication step; model exchange
+//   slopes, snapshot              derivatives of the variables; the state as bytes
 #pragma once
 
 #include <optional>
@@ -77,6 +85,12 @@ struct Wheel {
 inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
 inline bool is_idle(const Wheel& wheel, unsigned variable) {
   return is_guide_rate(variable) && is_running(wheel.run.phase) && !wheel.setup.steered();
+}
+
+// Whether what is in force acts on from the instant reached: nothing was set since the last step. An input that varied
+// in it stays where it arrived, but the carrier still turns as in the step.
+inline bool acts_on(const Wheel& wheel) {
+  return wheel.demand.news == News::none || (wheel.demand.news == News::stays && wheel.setup.steered());
 }
 
 // (run.t) => state there, in run.y

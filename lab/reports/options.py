@@ -11,8 +11,8 @@ from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, Parser, suggestion
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
---publish into docs/results, which is kept under version control. Without NAME: lists the reports and their parts. Exit
-status 1: a figure is beyond its bound (lab/reports/requirements.csv)."""
+--publish into docs/results. Without NAME it lists the reports and their parts. The exit status is 1 if a figure exceeds
+its bound (lab/reports/requirements.csv)."""
 LAB = ROOT / "lab"
 OF = {"vehicles": ("lab/vehicles", "examples/vehicles")}  # folders that may be absent
 NAMES = tuple(

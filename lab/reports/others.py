@@ -42,7 +42,7 @@ def ends(table: Mapping[str, np.ndarray] | Run, *names: str, places: int = 8) ->
 def kane(library: Library) -> Compared:
     from .programs.kane import distance
 
-    scene = "200 random states, loads, inertias and laws of friction: ψ̈, θ̈, φ̈, N"
+    scene = "200 random states, loads, inertias and laws of resistance: ψ̈, θ̈, φ̈, N"
     return "symbrim 0.1.0 (TU Delft; SymPy, Kane)", scene, "derived", "same", distance(), "rounding"
 
 

@@ -106,13 +106,13 @@ def from_above(ax: Axes, title: str, legend: str) -> None:
 
 @part(2)
 def energy(report: Report) -> Row:
-    """what friction takes, and the weak releases of a long run"""
+    """what rolling resistance takes, and the weak releases of a long run"""
     rough, free, long = run(report, 10, 1e-3, **FRICTION), run(report, 10, 1e-3), run(report, 150, 0.05, **FRICTION)
     sticks = rough["friction_mode"] == 0
     with picture(report, "physics_energy") as (left, right):
         edges = np.concatenate([rough.t[:1], (rough.t[:-1] + rough.t[1:]) / 2, rough.t[-1:]])
         style.strip(left, edges, sticks, style.colour("held"), top=True)
-        left.plot(free.t, free["E"], color=style.GREY, label="without friction")
+        left.plot(free.t, free["E"], color=style.GREY, label="$s = 0$")
         left.plot(rough.t, rough["E"], color=style.BLUE, label="$s = 0.03$ m")
         title = "The paper's two scenes; at the top: held at $\\omega_z = 0$"
         label(left, TIME, ENERGY, title, legend=(0.3, 0.56), xlim=(0, 10), ylim=(50, 80))
@@ -158,7 +158,7 @@ def misprints(report: Report) -> Row:
 
 @part(2)
 def path(report: Report) -> Row:
-    """the path of the contact point without and with friction"""
+    """the path of the contact point without and with rolling resistance"""
     free, rough = run(report, 60, 5e-3), run(report, 10, 5e-3, **FRICTION)
     first, stuck = free.t <= 10, np.where(rough["friction_mode"] == 0, rough["Y_C"], np.nan)
     with picture(report, "physics_path", height=80) as (left, right):
@@ -168,7 +168,7 @@ def path(report: Report) -> Row:
         right.plot(rough["X_C"], stuck, color=style.colour("held"), lw=1.8, label="held at $\\omega_z = 0$")
         for ax, scene in ((left, free), (right, rough)):
             ax.plot(scene["X_C"][0], scene["Y_C"][0], "o", color=style.INK, ms=3, label="start")
-        from_above(left, "Without friction: equal arcs, turned and mirrored", "upper right")
+        from_above(left, "$s = 0$: equal arcs, turned and mirrored", "upper right")
         from_above(right, "$s = 0.03$ m, 10 s: it settles into a circle", "lower right")
     return {}
 

@@ -2,7 +2,6 @@
 
 The source folder is the project's root, so that links between documents, and to sources, stay as they are.
 Formulas become MathML, which browsers draw by themselves, with a font for mathematics that the site brings along.
-docs/decisions/package.md: why it is made like this.
 """
 
 from __future__ import annotations
@@ -39,7 +38,8 @@ suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 # Folders of the lab can be deleted whole, and a release fills dist/: of a link into what is not here, the words stay.
 ABSENT = [f"lab/{name}" for name in ("lesson", "notebook", "reports", "studies", "vehicles")] + ["dist/wheel.fmu"]
 suppress_warnings += ["myst.xref_missing"] * any(not (ROOT / part).exists() for part in ABSENT)
-suppress_warnings += ["toc.empty_glob"] * (not (ROOT / "dist").exists())
+CONTENTS = (HERE / "contents.txt").read_text(encoding="utf-8").splitlines()
+CONTENTS = [line for line in CONTENTS if line[:1] != "/" or "*" in line or any(ROOT.glob(f"{line[1:]}.*"))]
 html_theme = "furo"
 html_title = f"wheel.fmu {release}"
 html_favicon = "../../fmu-src/archive/model.png"
@@ -72,7 +72,7 @@ NAMED = {
     '<div class="formula">': '<div tabindex="0" class="formula">',
     "<pre>": '<pre tabindex="0">',
 }
-MORE = {root_doc: (HERE / "contents.txt").read_text(encoding="utf-8"), "docs/c_header": f"\n## Reference\n\n{HEADER}"}
+MORE = {root_doc: "\n".join(CONTENTS), "docs/c_header": f"\n## Reference\n\n{HEADER}"}
 
 
 def read(app: Sphinx, name: str, source: list[str]) -> None:

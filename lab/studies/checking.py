@@ -51,10 +51,10 @@ def checked(study: Study, results: xr.Dataset, fmu: Path, place: str, count: int
     found, late = error[np.isfinite(error)], np.abs(shift[np.isfinite(shift)])
     if not found.size:
         return results.assign(about), f"None of the {len(drawn)} wheels to be checked runs."
-    said = f"Of {found.size} wheels run again by another solver the error is at most {found.max():.1e} of the"
+    said = f"Of {found.size} wheels run again with another solver the error is at most {found.max():.1e} of the"
     shifted = f"shifts by up to {late.max():.1e} s" if late.any() else "is not shifted"
-    said += f" range (median {np.median(found):.1e}); the end of a run {shifted}."
+    said += f" range (median {np.median(found):.1e}), and the end of a run {shifted}."
     parted, shared = int((found > DIGITS).sum()), int((runs[1]["n_jac"] > 0).sum())
-    said += f" In {parted} of them both runs part: unstable or chaotic." * bool(parted)
-    said += f" In {shared} of them slides or stiff layers are the same engine's." * bool(shared)
+    said += f" In {parted} of them the motion is unstable or chaotic, and the two runs part." * bool(parted)
+    said += f" In {shared} of them slides or boundary layers are solved by the same solver." * bool(shared)
     return results.assign(about), said

@@ -24,7 +24,7 @@ SHOWN = """examples:
   ./scripts/study --vary theta_start=60deg:90deg:31 --vary s=0,0.01,0.03 --set phi_dot_start=-3 \\
       --measure lowest=lowest --out results/studies/lean.zarr --csv
   ./scripts/study --list starts.csv         one wheel per row; the first row has the names
-  ./scripts/study lean                      goes on with results/studies/lean.zarr, or another folder of results
+  ./scripts/study lean                      continues results/studies/lean.zarr, or another folder of results
 """
 
 
@@ -112,7 +112,7 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
     )
     several: dict[str, Any] = {"action": "append", "default": []}
     add = parser.add_argument
-    add("study", nargs="?", help="an example's name, a Python file, or earlier results to go on with")
+    add("study", nargs="?", help="an example's name, a Python file, or earlier results to continue")
     add("--vary", **several, metavar="NAME=VALUES", help="an axis of the grid: 1,2,3 or first:last:count")
     add("--list", type=Path, metavar="CSV", help="one wheel per row instead of a grid")
     add("--set", **several, metavar="NAME=VALUE", help="a value for all wheels, such as slope=12%%")
@@ -124,17 +124,17 @@ def arguments_of(argv: list[str] | None = None) -> argparse.Namespace:
         "'down=first(theta<30deg)' (theta_end=theta, at the end of the run)",
     )
     add("--history", nargs="+", default=[], metavar="NAME", help="variables to keep at every communication point")
-    add("--stop-time", type=seconds, default=10.0, help="s (10)")
-    add("--interval", type=seconds, default=0.01, help="s between communication points (0.01)")
+    add("--stop-time", type=seconds, default=10.0, help="duration, s (10)")
+    add("--interval", type=seconds, default=0.01, help="communication step, s (0.01)")
     add("--tolerance", type=tolerance, help="relative tolerance of the FMU (1e-8)")
-    add("--workers", type=count, help="processes on this machine; all cores if not given")
+    add("--workers", type=count, help="processes on this machine (one per core)")
     add("--scheduler", metavar="tcp://HOST:PORT", help="a running Dask scheduler instead")
-    add("--fmu", type=Path, default=ROOT / "wheel.fmu", help="another one than that of ./scripts/run")
+    add("--fmu", type=Path, default=ROOT / "wheel.fmu", help="the FMU (wheel.fmu, as ./scripts/run leaves it)")
     add("--out", metavar="PLACE", help="Zarr folder of the results, or its URL (results/studies/NAME.zarr)")
     add("--overwrite", action="store_true", help="discard existing results and files")
     add("--netcdf", action="store_true", help="a copy as NetCDF beside the Zarr folder")
     add("--csv", action="store_true", help="a copy as CSV, one row per wheel (and time)")
-    add("--check", type=count, metavar="N", help="run N wheels again by another solver; state their error")
+    add("--check", type=count, metavar="N", help="repeat N random wheels with another solver to estimate their error")
     add("--publish", action="store_true", help="write an example's figure into docs/figures")
     arguments = parser.parse_args(argv)
     arguments.study = file_of(arguments.study) if arguments.study else study_of(arguments)

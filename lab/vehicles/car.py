@@ -3,6 +3,7 @@
 import sys
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,14 +40,20 @@ def drive(
     progress: bool = False,
 ) -> Table:
     """A manoeuvre by the package's own step, unless h is given; recorded every `grid`, or every second step."""
-    of, start = system(), run.start()
-    h = h or of["step"]
-    components = [Component(name, fmus[model], start[name]) for name, model in of["fmus"].items()]
-    with loaded(*components):
-        master = Master(components, of["connections"])
-        times = master.steps(run.stop, h, exchange, max(1, round((grid or 2 * h) / h)), progress)
-        rows = [[t, *chain.from_iterable(master.read(*of) for of in RECORD.items())] for t in times]
+    of = system() | {"start": run.start(), "stop": run.stop}
+    rows = recorded(fmus, of | ({"step": h} if h else {}), RECORD, exchange, grid, progress=progress)
     return dict(zip(("time", *COLUMNS), np.transpose(rows), strict=True))
+
+
+def recorded(
+    fmus: Fmus, of: dict[str, Any], record: dict[str, tuple], exchange: str, grid: float, *, progress: bool
+) -> list[list[float]]:
+    """Rows of a system's run: time, and the variables of each component."""
+    components = [Component(name, fmus[model], of["start"][name]) for name, model in of["fmus"].items()]
+    with loaded(*components):
+        master, h = Master(components, of["connections"]), of["step"]
+        times = master.steps(of["stop"], h, exchange, max(1, round((grid or 2 * h) / h)), progress)
+        return [[t, *chain.from_iterable(master.read(*one) for one in record.items())] for t in times]
 
 
 def error(table: Table, truth: Table) -> float:

@@ -52,7 +52,7 @@ def car(run: Manoeuvre) -> SimpleNamespace:
     c.heights = c.m_B * c.h_B + 4 * M_WHEEL * R  # kg m
     c.inertia = c.heights + 4 * J_Z / R  # kg m
     c.leaning = c.m_B * (c.h_B - (R - R_0)) + 4 * M_WHEEL * R_0  # kg m, about the contacts, per roll angle
-    c.drag = run["s"] * c.mass * c.g  # N m, of rolling friction about all axles
+    c.drag = run["s"] * c.mass * c.g  # N m, of rolling resistance about all axles
     c.grade = G * np.sin(run["slope"]) * np.cos(run["slope_direction"])  # m/s2
     return c
 

@@ -16,9 +16,9 @@ R, R_0, M_WHEEL, J_X, J_Z, G = 0.35, 0.3, 20.0, 0.9, 1.8, 9.81  # of the wheels;
 
 
 @cache
-def system() -> dict[str, Any]:
-    """The car's FMUs, connections, start values and step, as its package has them."""
-    return runpy.run_path(str(EXAMPLES / "package.py"))["read"](EXAMPLES / "car" / "car.toml")
+def system(name: str = "car") -> dict[str, Any]:
+    """FMUs, connections, start values and step of the car, or of quarter_car, as its package has them."""
+    return runpy.run_path(str(EXAMPLES / "package.py"))["read"](EXAMPLES / name / f"{name}.toml")
 
 
 @cache

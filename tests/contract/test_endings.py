@@ -31,7 +31,7 @@ def test_the_end_does_not_depend_on_the_communication_grid(wheel):
     assert at_once.bits() != wheel().start(**DROP).run([0.59])[0]
 
 
-@pytest.mark.parametrize(("values", "what"), [(DROP, "lies flat"), (LIFT, "lifted off the ground")])
+@pytest.mark.parametrize(("values", "what"), [(DROP, "lies flat"), (LIFT, "lifted off the road")])
 def test_an_ending_is_logged_with_every_digit_of_its_instant_and_no_later_step_is_answered_with_ok(wheel, values, what):
     w = wheel().start(start=0.1, **values)
     assert w.step(10.0) == DISCARD
@@ -139,5 +139,5 @@ def test_a_jump_of_the_force_that_lifts_a_wheel_is_no_loss_of_grip(wheel, formul
     w.take_messages()
     assert w.put(F_Z=weights * 196.2).step(0.1) == DISCARD
     hint, ending = w.texts()
-    assert hint == HINT and ending.startswith("The wheel lifted off the ground at t = 0.2 s")
+    assert hint == HINT and ending.startswith("The wheel lifted off the road at t = 0.2 s")
     assert w.get("contact_mode") == [0]

@@ -20,7 +20,7 @@ ROLLING = {"theta_start": pi / 2, "phi_dot_start": -60.0}
 PULLED = {"keep_contact": True, "theta_start": 1.2, "theta_dot_start": 4.0, "psi_dot_start": 0.1, "phi_dot_start": 0.0}
 LIMIT = "needs a friction coefficient above mu_max"
 JAM = "jams (Painleve's paradox) with mu_slide"
-PULLS = "the ground pulls; without keep_contact the wheel would lift off"
+PULLS = "the road pulls, and the wheel would lift off without keep_contact"
 Case = tuple[str, str]  # as it is logged, and as it must be, numbers to five digits
 
 
@@ -82,7 +82,7 @@ def values(library: Library) -> Iterator[Case]:
     """Refused at the end of initialization (test_parameters.py: word for word), or during the run."""
     yield from ((text, text) for _, text, _ in REFUSALS)
     w = started(library, s=0.03, slope=0.1, F_X=3.0, mu_max=0.9)
-    carrier = "only the carrier of a guided wheel turns, by co-simulation; the value stays 0."
+    carrier = "this input needs guided = true and co-simulation; the value stays 0."
     for name, value, why in (
         ("s", -0.5, "it must be at least 0; the value stays 0.03."),
         ("slope", 1.75, f"it must be less than {pi / 2}; the value stays 0.1."),
@@ -123,7 +123,7 @@ def calls(library: Library) -> Iterator[Case]:
     yield answer(rates, [999], 1, [1], [0]), f"fmi2{rates}: value reference 999 is not a real output."
     yield answer(rates, theta, 1, [2], [0]), f"fmi2{rates}: order 2 of theta: only the first derivative is provided."
     text = "derivative 4 = 2.5 of F_X: orders 1 to 3 and finite values are allowed"
-    text += ", of a carrier's rate only where it turns: guided, by co-simulation."
+    text += ", and those of a carrier's rate need guided = true and co-simulation."
     yield answer(inputs, force, 1, [4], [2.5]), f"fmi2{inputs}: {text}"
     yield answer("GetRealStatus", 1, [0]), "fmi2GetRealStatus: there is no status of kind 1."
     spin = w.by(0.5).get("omega_z")[0]

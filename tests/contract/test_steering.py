@@ -102,7 +102,7 @@ def test_only_a_guided_wheel_in_co_simulation_takes_them(library: Library) -> No
     with library.wheel() as w:
         w.put(**{**LEANS, **FREE})
         assert w.set_input_derivatives(["theta_dot_guide"], [[0.0], [0.1]]) == OK
-        assert w.initialise() == ERROR and "only the carrier of a guided wheel turns" in w.said()
+        assert w.initialise() == ERROR and "these inputs need guided = true" in w.said()
 
 
 def test_absurd_rates_are_refused_and_the_largest_can_be_computed(library: Library) -> None:

@@ -231,12 +231,12 @@ def test_of_two_scenes_the_one_that_moves_is_drawn_and_the_other_named(
 ) -> None:
     drawn, still = [], "friction" if free else "free"
     monkeypatch.setattr(paper, "pictures", lambda scenes, out: drawn.extend(scenes) or PICTURES(scenes, out)[:1])
-    ends = {"ending": "lifted off the ground at $t$ = 0.5928 s"}
+    ends = {"ending": "lifted off the road at $t$ = 0.5928 s"}
     both = [replace(scene(s), columns={n: x[:1] for n, x in scene(s).columns.items()}, **ends) for s in (0.0, 0.03)]
     both[not free] = scene(0.03 * (not free))
     monkeypatch.setattr(paper, "scenes_of", lambda *_: both)
     paper.main(tmp_path, {})
-    why = "has no motion to draw: the wheel lifted off the ground at t = 0.5928 s."
+    why = "has no motion to draw: the wheel lifted off the road at t = 0.5928 s."
     assert f'The scene "{still}" {why}' in capsys.readouterr().err
     assert [one.name for one in drawn] == [both[not free].name] and (tmp_path / "diagrams.png").stat().st_size > 1e5
     both[not free] = both[free]

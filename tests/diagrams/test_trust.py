@@ -81,12 +81,12 @@ def test_the_estimated_error_of_a_long_free_run_is_of_the_size_of_the_true_one(w
         ({"s": "0.03", "friction_law": "2", "omega_s": "1e-6"}, "CVODE's Adams", True),
     ],
 )
-def test_another_solver_judges_and_where_it_is_the_same_engine_the_line_says_so(
+def test_another_solver_judges_and_where_it_is_the_same_solver_the_line_says_so(
     wheel: Wheel, start, solver, shared
 ) -> None:
     times = np.linspace(0, 2, 21)
     said = trust(wheel.motion(start, times, DEFAULT), wheel.judge(start, times)).said("A")
-    assert f" of the range by {solver}" in said
+    assert f" of the range, estimated with {solver}" in said
     assert ("; slides and boundary layers are solved by the same solver" in said) == shared
 
 

@@ -1,14 +1,60 @@
 """The paper's misprints, each proven by what it does: docs/errata.md lists them.
 
 The numpy transcription of (1)-(24) keeps a misprint on request; the paper's free wheel (27)-(33) is set rolling with
-SciPy. test_paper_matrices.py has the mended matrices.
+SciPy. The mended matrices are judged by a complex step, Euler's equations, and as a whole by test_equations.py.
 """
 
 import numpy as np
+import pytest
 from support.bounds import EPSILON, absolute_error, beyond, relative_error, within
 
+from wheelfmu.fmu import equations as eq
 from wheelfmu.truth.misprints import WHEEL, papers_start, rolled
-from wheelfmu.truth.paper_transcription import THETA, Paper, states, times, transposed
+from wheelfmu.truth.paper_transcription import PHI, PSI, THETA, Paper, paper_table, states, times, transposed
+
+UNEQUAL = paper_table(J_x=0.8, J_y=1.1, s=0.03)
+ALONG = {"psi": np.eye(12)[PSI], "theta": np.eye(12)[THETA], "phi": np.eye(12)[PHI]}
+ALONG["dot"] = np.hstack([states()[:, 6:], np.zeros((1000, 6))])  # the motion
+DERIVATIVES = ("A_psi", "A_theta", "A_phi", "Q_theta", "Q_phi", "r_theta", "r_phi", "A_dot", "Q_dot", "r_dot", "B_dot")
+
+
+@pytest.mark.parametrize("name", DERIVATIVES)
+def test_mended_the_derivatives_6_to_20_are_those_of_their_matrices(name: str) -> None:
+    """By a complex step, which is exact to rounding."""
+    of, along = name.split("_")
+    stated = getattr(Paper(UNEQUAL, states()), name)
+    slope = getattr(Paper(UNEQUAL, states() + 1e-40j * ALONG[along]), of).imag / 1e-40
+    within(absolute_error(stated, slope), 320 * EPSILON, "derivative off the slope")  # of matrices times 10 rad/s
+    beyond(absolute_error(stated, 1.001 * slope), 1e-5, "derivative off a slope 0.1 % larger")
+
+
+def test_mended_M_and_F_beta_of_16_18_are_eulers_equations_in_body_axes() -> None:
+    y = states()
+    paper = Paper(UNEQUAL, y)
+    beta_ddot = np.random.default_rng(3).normal(size=(len(y), 3))
+    omega_dot = times(paper.Q, beta_ddot) + times(paper.Q_dot, paper.beta_dot)
+    spin = times(paper.J, paper.omega)
+    euler = times(paper.J, omega_dot) + np.cross(paper.omega, spin)
+    stated = times(paper.M, np.hstack([beta_ddot, beta_ddot]))[:, 3:] - paper.F_beta
+    within(absolute_error(stated, euler), 16 * 100 * EPSILON, "rate of spin, N m")  # terms of 100 N m
+    beyond(absolute_error(stated + np.cross(spin, paper.omega), euler), 2, "without the gyroscopic part, N m")
+
+
+def test_constants_and_start_values_of_27_to_33_are_those_the_paper_prints() -> None:
+    wheel = eq.paper_wheel(s=0.3 / 10)
+    within(relative_error((wheel.J_x, wheel.J_y), (wheel.m * wheel.r_0**2 / 2,) * 2), 16 * EPSILON, "J_x, J_y")
+    within(relative_error(wheel.J_z, wheel.m * wheel.r_0**2), 16 * EPSILON, "J_z")
+    printed = [-0.07765, 0, 0.33978, 0, 0.69659, 0]
+    for formulation in (eq.REDUCED, eq.MULTIBODY):
+        k = eq.kinematics(formulation, wheel, eq.start(formulation, wheel, eq.PAPER_START))
+        found = [k.X_O, k.Y_O, k.Z_O, k.X_O_dot, k.Y_O_dot, k.Z_O_dot]
+        within(absolute_error(found, printed), 5e-6, "place, m, and velocity, m/s")  # five digits are printed
+        thin = eq.paper_wheel(r=0)
+        k = eq.kinematics(formulation, thin, eq.start(formulation, thin, eq.PAPER_START))
+        beyond(abs(k.Y_O_dot - 0.69659), 0.05, "velocity of a disc, m/s")  # (33) needs the tube
+
+
+# ---- each misprint ----
 
 ENERGY = 75.1168064  # J, at the start of the free wheel
 
@@ -82,7 +128,7 @@ def test_24_yields_accelerations_by_their_dimension() -> None:
     y, wheel = states(), WHEEL.copy()
     slow = Paper(wheel, y).solve()
     y[:, 6:] *= 3  # a unit of time three times as long
-    wheel["g"] *= 9
+    wheel["g_n"] *= 9
     fast = Paper(wheel, y).solve()
     size = np.abs(fast).max(axis=1, keepdims=True)
     within(absolute_error(fast / size, 9 * slow / size), 256 * EPSILON, "solution off nine times itself")  # 1/s2

@@ -41,7 +41,7 @@ def transcribed(scenes: Table, motions: Table, slides: bool) -> tuple[Table, Tab
     if slides:
         theta, theta_dot, theta_ddot = motions["theta"], motions["theta_dot"], scenes["load"]["guide"][:, 1]
         rise = scenes["wheel"]["r_0"] * (np.cos(theta) * theta_ddot - np.sin(theta) * theta_dot**2)
-        N = scenes["wheel"]["m"] * (scenes["wheel"]["g"] + rise) - scenes["load"]["F"][:, 2]
+        N = scenes["wheel"]["m"] * (scenes["wheel"]["g_n"] + rise) - scenes["load"]["F"][:, 2]
         mu = np.where(N > 0, scenes["mu_slide"], 0)
         paper.slip_of = mu, motions["psi"] + np.arctan2(motions["slip_y"], motions["slip_x"])
     x = solved(paper, scenes)

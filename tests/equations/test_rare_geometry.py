@@ -22,12 +22,12 @@ INERTIA = ("J_x", "J_y", "J_z")
 
 
 def first(random: Random, level: bool) -> tuple[Table, Table]:
-    """A scene and a motion; `level`: as the FMU can start it, without rolling friction on a level road."""
+    """A scene and a motion; `level`: as the FMU can start it, without rolling resistance on a level road."""
     scene, motion = random_scenes(random, eq.FRICTIONLESS if level else None, False, 1), random_motions(random, 1)
     scene["contact"], scene["mu_slide"] = 1, random.uniform(0.5, 1.5)
     if level:
         scene["wheel"]["g_X"] = scene["wheel"]["g_Y"] = scene["wheel"]["s"] = 0
-        scene["wheel"]["g"], scene["load"]["brake"] = 9.81, 0
+        scene["wheel"]["g_n"], scene["load"]["brake"] = 9.81, 0
     return scene, motion
 
 
@@ -126,7 +126,7 @@ def test_the_fmu_begins_a_slide_in_that_direction_and_goes_on(wheel) -> None:
     begun = 0
     for state in neighbours(True):
         body, motion, load = state.scene["wheel"][0], state.motion[0], state.scene["load"][0]
-        values = {name: float(body[name]) for name in ("m", "r_0", "r", *INERTIA, "g")}
+        values = {name: float(body[name]) for name in ("m", "r_0", "r", *INERTIA)} | {"g": float(body["g_n"])}
         values |= {f"{name}_start": float(motion[name]) for name in ("psi", "theta", "phi")}
         values |= {f"{name}_start": float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot")}
         values |= dict(zip(("F_X", "F_Y", "F_Z"), load["F"].tolist(), strict=True))

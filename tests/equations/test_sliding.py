@@ -1,6 +1,6 @@
 """The wheel that slides: two forms, and Newton and Euler with friction as a force at the contact (truth/reference).
 
-Random states of any inertia, under loads, each law of rolling friction, any slip; some wheels jam: N is
+Random states of any inertia, under loads, each law of rolling resistance, any slip; some wheels jam: N is
 infinite. Errors relative to the largest entry of their group.
 """
 

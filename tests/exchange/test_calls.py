@@ -226,7 +226,7 @@ def test_indicators_are_finite_wherever_the_derivatives_are_and_else_refused(
 
 LIFTED = {"F_Z": 500.0, **AT_REST}
 NO_START = {  # and those of contract/test_messages.py
-    "At the start the wheel lifted off the ground (N = -303.8 N, mu_required = inf)": LIFTED,
+    "At the start the wheel lifted off the road (N = -303.8 N, mu_required = inf)": LIFTED,
     "formulation = 3 (multibody): model exchange needs": {"formulation": "multibody"},
 }
 
@@ -242,7 +242,7 @@ def test_a_wheel_off_the_ground_at_the_start_is_taken_where_the_ground_may_pull(
     with loaded(library).new(logging=True) as wheel:
         wheel.start(keep_contact=True, **LIFTED)
         assert wheel.get("lambda_3") == pytest.approx([-303.8])
-        assert wheel.decide().valuesOfContinuousStatesChanged and "the ground pulls" in wheel.sentences[-1]
+        assert wheel.decide().valuesOfContinuousStatesChanged and "the road pulls" in wheel.sentences[-1]
 
 
 def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:

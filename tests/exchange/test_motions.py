@@ -98,7 +98,7 @@ def test_a_brake_put_on_by_a_continuous_input_stops_and_holds(library: Library) 
     within(abs(run.events[-1] - stop), 1e-11, "instant at which it stops, s")
     assert got["omega_z"][-1] == 0
     late, _, _ = moved(library, [3.0], inputs=brake, s=1e-5, **{**UPRIGHT, "phi_dot_start": -5.0})
-    beyond(abs(late.events[-1] - stop), 1e-5, "instant with a trace of rolling friction, s")
+    beyond(abs(late.events[-1] - stop), 1e-5, "instant with a trace of rolling resistance, s")
 
 
 SOON = 1e-7 * (0.35 / 9.81) ** 0.5  # s: an event that lies ahead by less has happened

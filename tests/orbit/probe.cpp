@@ -75,7 +75,7 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   place = at, size = so_much, added = by;
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
-  const orbit::Motion motion = {problem, setup.tolerance, wheel::follow_on_orbit, setup.start, solver::never};
+  const orbit::FreeMotion motion = {problem, setup.tolerance, wheel::follow_on_orbit, setup.start, solver::never};
   const bool entered = probe->orbit.enter(motion, false, probe->solver);
   probe->wheel.run.in_force = at_start;
   return entered ? static_cast<int>(probe->orbit.result()) : 0;

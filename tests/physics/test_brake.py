@@ -41,7 +41,7 @@ def test_a_brake_that_is_let_off_leaves_nothing_behind(library: Library) -> None
 
 
 S, CAPACITY = 0.02, 100.0  # m, N m
-ROLLING = S * M * G  # N m, capacity of the rolling friction
+ROLLING = S * M * G  # N m, capacity of the rolling resistance
 SHARE = CAPACITY / (CAPACITY + ROLLING)
 
 
@@ -55,7 +55,7 @@ def test_of_a_rolling_wheel_the_brake_gives_its_capacity_and_the_ground_the_rest
         beyond(np.abs(run["tau"] - brake).min(), 3, "moment of both, N m")
 
 
-def test_brake_and_rolling_friction_hold_a_wheel_in_proportion_to_their_capacities(library: Library) -> None:
+def test_brake_and_rolling_resistance_hold_a_wheel_in_proportion_to_their_capacities(library: Library) -> None:
     load = {"M_brake": (CAPACITY,), "F_X": (10.0, 500.0)}
     held = braked(library, [0.0, 0.25, 0.5], load, phi_dot_start=0.0, s=S)
     tau = R * (10.0 + 500.0 * held["t"])

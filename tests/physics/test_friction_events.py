@@ -1,4 +1,4 @@
-"""Rolling friction as a switch: the 37 transitions of the paper's friction scene, and what friction takes.
+"""Rolling resistance as a switch: the 37 transitions of the paper's friction scene, and what friction takes.
 
 s = 0.03 m, Filippov's law at omega_z = 0 (physics facts 3 and 5). friction_mode: sign of omega_z, 0 held.
 """

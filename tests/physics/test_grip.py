@@ -202,7 +202,7 @@ def test_a_ground_that_pulls_gives_no_grip_however_little_of_it_is_needed(librar
         assert run.end is not None and "mu_max = 0.5" in str(run.ended)
         within(abs(run.end - end), 64 * EPSILON, "instant at which N vanishes, s")
         free = library.simulate([0.0, 0.3, 1.0], 1e-10, inputs, **rolling)  # the partner: grip is not checked
-        assert free.end is None and any("the ground pulls" in message for message in free.messages)
+        assert free.end is None and any("the road pulls" in message for message in free.messages)
     with loaded(library).new() as wheel:
         assert wheel.set(mu_max=0.5, F_Z=2 * weight, **rolling) == OK
         assert wheel.initialise() == ERROR and "mu_max = 0.5" in wheel.said()

@@ -1,4 +1,4 @@
-"""A ground that pulls, with rolling friction: at N = 0 the law has a corner, and each such instant is an event.
+"""A ground that pulls, with rolling resistance: at N = 0 the law has a corner, and each such instant is an event.
 
 Violent starts: two to eight times the rates of the paper's wheel, keep_contact, exact law. Judged by the reference,
 which ends each mode at N = 0 too, and by the unit's own tightest run; errors relative to the range of each headline
@@ -71,7 +71,7 @@ def test_the_reference_goes_the_same_way(library: Library, seed: int) -> None:
         beyond(distance(got, other), 1e-2, "distance with s |N| while the ground pulls / range")
 
 
-# Upright on a wheel carrier: s, inputs, the instant from which rolling friction has no moment, and the rate of the spin
+# Upright on a wheel carrier: s, inputs, the instant from which rolling resistance has no moment, the rate of the spin
 # then. A slide on ground that presses turns the wheel by mu N R.
 MU, R, LIFT, TORQUE = 0.1, WHEEL.r_0 + WHEEL.r, 500.0, 0.01
 SLIDES = {"slip_x_start": 3.0, "mu_max": MU, "mu_slide": MU, "omega_s": 1.0}

@@ -171,7 +171,7 @@ def test_a_ground_that_may_pull_does_so_from_the_instant_of_the_lift_off_on(libr
     for values, form, fine in cases:
         pulled = {**values, "formulation": form, "keep_contact": True}
         done = attempt(library, pulled, [0.0, fine - 1e-6, fine + 1e-6, 0.6], EXACT, Schedule())
-        said = [float(text.split()[2]) for text in done.messages if "the ground pulls" in text]
+        said = [float(text.split()[2]) for text in done.messages if "the road pulls" in text]
         assert done["lambda_3"][1] > 0 > done["lambda_3"][2]
         within(abs(said[0] - fine), 3e-9, "instant of the pull, s")  # logged to the nanosecond
 

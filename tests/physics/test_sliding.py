@@ -355,7 +355,7 @@ def test_a_slip_that_begins_where_the_ground_pulls_keeps_its_direction(library: 
         wheel.start(keep_contact=True, formulation=formulation, mu_max=1.0, mu_slide=0.36, **fast).to(0.01)
         assert [text.split(": ")[1].split(";")[0] for text in wheel.texts()] == [
             "the wheel starts to slide.",
-            "the ground pulls",
+            "the road pulls",
         ]
 
 

@@ -21,7 +21,7 @@ REST = {**UPRIGHT, "phi_dot_start": 0.0}
 
 
 @pytest.mark.parametrize("s", [0.01, 0.03])
-def test_a_wheel_set_down_stays_exactly_while_the_rolling_friction_can_hold_it(library: Library, s: float) -> None:
+def test_a_wheel_set_down_stays_exactly_while_the_rolling_resistance_can_hold_it(library: Library, s: float) -> None:
     steepest = atan(s / R)
     stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), s=s, **REST)
     assert (stays["omega_z"] == 0).all()

@@ -1,4 +1,4 @@
-"""The reference solution judged: its search for events, integral laws, the benchmark, rolling friction.
+"""The reference solution judged: its search for events, integral laws, the benchmark, rolling resistance.
 
 Every bound has a partner that breaks an equation, a parameter or a law, and must exceed it. Closed forms judge the
 FMU, which is compared with this reference.

@@ -81,7 +81,7 @@ def test_a_study_runs_that_of_a_file_too(place: Path) -> None:
 
 
 def test_an_example_is_built_and_run(place: Path) -> None:
-    assert "lateral force of the front axle" in door(place, "example", "step")
+    assert "lateral force of the front axle" in door(place, "example", "car", "step")
     assert "CMAKE_BUILD_TYPE:STRING=Release\n" in (place / "build" / "examples" / "CMakeCache.txt").read_text()
 
 

@@ -22,7 +22,7 @@ COMMANDS = {
     "study fates --overwrite --out {place}/z": ("", 3.0),
     "page {place}/page.html": ("", 1.5),
     "test quick": ("Built preset release.", 2.0),
-    "example lane": ("Built preset release.", 0.3, 1.0),
+    "example car": ("Built preset release.", 0.3, 1.0),
 }
 CASES = [(line, words, delay) for line, (words, *delays) in COMMANDS.items() for delay in delays]
 

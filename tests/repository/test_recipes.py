@@ -123,7 +123,7 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     for title, places in (("parameter", OF_PARAMETERS), ("message", OF_MESSAGES), ("output", OF_OUTPUTS)):
         patch(root, *recipes(f"Add an? {title}"), places)
     description = root / "modelDescription.xml"
-    (unit,) = re.findall(r"with the unit `(<Unit.*)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+    (unit,) = re.findall(r"with the unit\s+`(<Unit.*)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
     patch(root, {"modelDescription.xml": [f"    {unit}\n"]}, {"modelDescription.xml": [UNITS]})
     text = description.read_text(encoding="utf-8")
     count = int(re.search(r'numberOfEventIndicators="(\d+)"', text)[1]) + len(events)

@@ -216,7 +216,7 @@ def lift_offs() -> Iterator[Case]:
         expected = Expectation("lifts", ended.time) if ended else Expectation()
         yield Case("lift-off", name, rolling, 2.0, expected, CHECKED)
     pulled = {**inertia(sphere(0.1)), "phi_dot_start": -0.3, "s": 0.03, "keep_contact": True}
-    # A ground that pulls has no rolling friction.
+    # A ground that pulls has no rolling resistance.
     yield Case("lift-off", "contact kept with friction, s = 0.03 m", pulled, 0.9, judges=CHECKED)
     for name, force in (("just leaves", -1e-6), ("just stays", 1e-6)):
         wheel = grazing(force)

@@ -33,7 +33,7 @@ EXTREMES: dict[str, dict[str, float]] = {
     **{f"spin {spin:g} rad/s": {**THROWN, "phi_dot_start": -spin} for spin in (1e-9, 100.0, 1e3)},
     **{f"slip {u:g} m/s": {**THROWN, "slip_x_start": u, "slip_y_start": -u} for u in (1e-10, 1e-5, 100.0)},
     "across alone": {"slip_y_start": -3.0},
-    "rolling friction": {**THROWN, "s": 0.1},
+    "rolling resistance": {**THROWN, "s": 0.1},
     "steep": {**THROWN, "slope": 1.2, "slope_direction": 0.7},
     "near flat": {**THROWN, "theta_start": 0.05},
 }

@@ -1,4 +1,4 @@
-"""Draws the README's pictures anew: docs/figures/paper_diagrams.png, and wheel_motion.webp, which is recorded from
+"""Redraws the README's pictures: docs/figures/paper_diagrams.png, and wheel_motion.webp, which is recorded from
 results/wheel.html in headless Chromium."""
 
 from argparse import Namespace

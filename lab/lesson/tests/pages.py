@@ -29,7 +29,6 @@ window.requestAnimationFrame = (act) => setTimeout(() => frame(act), 40);"""
 # The first view of a page, at its start.
 REST = """page.choose(0);
 page.player.set({playing: false, t: 0, speed: 1});
-if (!page.lesson) page.plots.choose('phase');
 for (const [name, on] of [['follow', true], ['axes', false], ['force', false]]) page.switches.flip(name, on);
 page.stage.controls.reset()"""
 # A vector in the road's axes as the scene shows it.

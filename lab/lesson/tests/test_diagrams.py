@@ -4,34 +4,28 @@ import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from .pages import change, open_step, opened, start, window_of
+from .pages import change, column, open_step, opened, start, window_of
 
-POINTS = """(name) => {
-  page.plots.choose(name);
+POINTS = """() => {
   const {lines, wheels} = page.plots.all.at(-1);  // those of the rows
   return lines.map(({times, points}, k) => points.filter((_, i) => wheels[k].table.time.includes(times[i])));
 }"""
 
 
-def expected(rows: np.ndarray) -> dict[str, list[np.ndarray]]:
-    """Both coordinates of each plane: deg, deg/s; m."""
-    return {
-        "phase": [np.degrees(rows["theta"]), np.degrees(rows["theta_dot"])],
-        "path": [rows["X_C"], rows["Y_C"]],
-    }
+def test_the_phase_portrait_is_the_rate_over_the_tilt(live):
+    open_step(live, 5)
+    (points,) = map(np.array, live.evaluate(POINTS))
+    wanted = np.degrees([column(live, name) for name in ("theta", "theta_dot")]).T
+    within(absolute_error(points, wanted), 1e-9, "points of the phase portrait, deg and deg/s")
+    beyond(np.ptp(points, axis=0).min(), 30, "its extent, deg and deg/s")
 
 
-@pytest.mark.parametrize(("name", "bound"), [("phase", 1e-9), ("path", 64 * EPSILON)])
-def test_the_last_diagram_is_the_rate_over_the_tilt_or_the_path_of_the_contact_point(recorded, simulate, name, bound):
-    names = ("theta_dot", "theta", "X_C", "Y_C")
-    free, friction = map(np.array, recorded.evaluate(POINTS, name))
-    wanted = np.column_stack(expected(simulate(output_interval=0.01, output=names, start_values={"s": 0.03}))[name])
-    within(absolute_error(friction, wanted), bound, f"points of {name}")
-    beyond(absolute_error(free, wanted), 1, f"points of {name} off the other wheel's")
-
-
-def test_the_path_from_above_has_one_scale(recorded):
-    recorded.evaluate("page.plots.choose('path')")
+def test_the_path_from_above_is_that_of_the_contact_point_in_one_scale(recorded, simulate):
+    free, friction = map(np.array, recorded.evaluate(POINTS))
+    rows = simulate(output_interval=0.01, output=["X_C", "Y_C"], start_values={"s": 0.03})
+    wanted = np.column_stack([rows["X_C"], rows["Y_C"]])
+    within(absolute_error(friction, wanted), 64 * EPSILON, "points of the path, m")
+    beyond(absolute_error(free, wanted), 1, "points of the path off the other wheel's, m")
     (left, right), (low, high), (width, height) = recorded.evaluate(
         "(({ranges, sizes}) => [...ranges, sizes])(page.plots.all.at(-1))"
     )

@@ -1,6 +1,7 @@
 """The lesson: the text of every step holds for its motion, questions keep their secret, and values act as they say."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -31,9 +32,10 @@ def between(page, begin: float, end: float) -> np.ndarray:
 
 
 def test_the_wheel_rolls_with_its_spin_times_its_radius_and_tips_unless_it_is_pushed(live):
-    spin, radius, speed, t, tipped = numbers(open_step(live, 1).split("slide there")[1])
+    spin, radius, speed, t, tipped, most = numbers(open_step(live, 1).split("slide there")[1])
     assert column(live, "v_x")[0] == pytest.approx(speed, abs=5e-3) and spin * radius == pytest.approx(speed, abs=0.01)
-    assert np.interp(t, column(live, "time"), lean(live)) == pytest.approx(tipped, abs=0.5) and lean(live).max() > 20
+    assert np.interp(t, column(live, "time"), lean(live)) == pytest.approx(tipped, abs=0.5)
+    assert lean(live).max() == pytest.approx(most, abs=0.05) and most > 20
     do(live, 0, M_3=-6)
     do(live, 1, M_3=0)
     assert lean(live).max() < 5
@@ -112,10 +114,16 @@ def test_thrown_with_backspin_it_slides_grips_and_comes_back(live):
     assert column(live, "v_x")[-1] == pytest.approx(-back, abs=6e-3)
 
 
+def stops(page) -> float:
+    """When it stands still, s."""
+    return column(page, "time")[np.argmax(column(page, "v_x") < 1e-6)]
+
+
 ATTEMPTS = {
     6: ({"s": 0.015}, lambda page: page.evaluate("page.wheels[0].phases.sticks[0][0]") > 1.3),
     10: ({"spin": -4}, lambda page: column(page, "v_x")[-1] > 0.1 and column(page, "slip_x")[-1] == 0),
     4: ({"lean": 8}, lambda page: lean(page, 1).max() > 20),
+    9: ({"brake": 50}, lambda page: stops(page) < 2.47 and page.evaluate("page.wheels[0].phases.slides.length") == 0),
 }
 
 
@@ -195,19 +203,14 @@ def test_a_picked_fate_is_judged_once_the_motion_has_shown_it(live, step, count,
         buttons = live.locator("#story .guess button")
         assert buttons.count() == count
         name = buttons.nth(k).inner_text()
-        buttons.nth(k).click()
+        buttons.nth(k).focus()
+        live.keyboard.press("Enter")
+        assert live.evaluate("document.activeElement.id") == "play"  # the focus is not lost with the buttons
         live.evaluate(PLAY, 0.1)
         verdict = live.locator("#story .verdict")
         assert not verdict.is_visible()
         live.evaluate(PLAY, 7)
         assert verdict.inner_text() == (f"As you guessed: {true}" if name == true else f"Not so: {true}")
-
-
-def test_a_question_names_its_measure(live):
-    open_step(live, 4, asks=True)
-    asked = live.locator("#story .text").inner_text()
-    assert "leans by more than 20°" in asked and "within ten seconds" in asked
-    assert lean(live).max() > 20 > lean(live, 1).max()  # by which the answer is true
 
 
 BEND = [(60 + 22 * i, 60 + 35 * np.sin(i)) for i in range(11)]  # CSS pixels, eleven points of a curve
@@ -225,31 +228,29 @@ def places(page, points) -> np.ndarray:
     return np.array([[end * (x - 48) / width, low + (1 - (y - 10) / height) * (high - low)] for x, y in points])
 
 
-@pytest.mark.parametrize("by", ["mouse", "finger"])
-@pytest.mark.parametrize("step", [2, 5])
+def draw(page, points, by: str = "mouse") -> None:
+    """A stroke in the diagram of the lean."""
+    canvas = page.locator(".plot canvas").first
+    box = canvas.bounding_box()
+    if by == "finger":
+        canvas.evaluate("(x) => { x.setPointerCapture = () => {}; }")
+    for k, (x, y) in enumerate(points):
+        there = (box["x"] + x, box["y"] + y)
+        if by == "finger":
+            touch = {"pointerType": "touch", "pointerId": 1, "buttons": 1, "clientX": there[0], "clientY": there[1]}
+            canvas.dispatch_event("pointermove" if k else "pointerdown", touch)
+            continue
+        page.mouse.move(*there)
+        if k == 0:
+            page.mouse.down()
+    page.mouse.up()
+
+
+@pytest.mark.parametrize(("step", "by"), [(2, "mouse"), (5, "finger")])
 def test_a_drawn_curve_bends_as_it_was_drawn_and_is_compared_with_the_true_one(live, step, by):
     """All eleven points of a stroke stay; what was drawn is judged by its mean distance."""
     open_step(live, step, asks=True)
-    canvas = live.locator(".plot canvas").first
-    box = canvas.bounding_box()
-    if by == "mouse":
-        for k, (x, y) in enumerate(BEND):
-            live.mouse.move(box["x"] + x, box["y"] + y)
-            if k == 0:
-                live.mouse.down()
-        live.mouse.up()
-    else:
-        for k, (x, y) in enumerate(BEND):
-            at = {
-                "pointerType": "touch",
-                "pointerId": 1,
-                "buttons": 1,
-                "clientX": box["x"] + x,
-                "clientY": box["y"] + y,
-            }
-            canvas.evaluate("(x) => { x.setPointerCapture = () => {}; }")
-            canvas.dispatch_event("pointermove" if k else "pointerdown", at)
-        canvas.evaluate("(x) => delete x.setPointerCapture")
+    draw(live, BEND, by)
     drawn = sketch(live)
     assert live.evaluate("page.player.t") == 0  # drawing does not seek
     wanted = places(live, BEND)
@@ -267,14 +268,10 @@ def test_a_drawn_curve_bends_as_it_was_drawn_and_is_compared_with_the_true_one(l
 
 def test_a_second_stroke_replaces_what_it_passes_and_no_more(live):
     open_step(live, 2, asks=True)
-    box = live.locator(".plot canvas").first.bounding_box()
-    for points in (BEND, [(128, 30), (150, 32), (172, 30)]):
-        for k, (x, y) in enumerate(points):
-            live.mouse.move(box["x"] + x, box["y"] + y)
-            if k == 0:
-                live.mouse.down()
-        live.mouse.up()
-    drawn, again = sketch(live), places(live, [(128, 30), (150, 32), (172, 30)])
+    second = [(128, 30), (150, 32), (172, 30)]
+    draw(live, BEND)
+    draw(live, second)
+    drawn, again = sketch(live), places(live, second)
     kept = places(live, [point for point in BEND if not 127 < point[0] < 173])
     assert drawn[1:] == pytest.approx(np.array(sorted([*kept.tolist(), *again.tolist()])), abs=0.5)
 
@@ -319,14 +316,7 @@ def test_a_body_has_the_moments_of_its_kind_and_ranges_that_fit_it(live, body):
         }[body]
     assert {name: wheel[name] for name in known} == pytest.approx(known, rel=0.05)
     high = float(live.locator("#slider_spin").get_attribute("max"))
-    limit = np.sqrt(
-        wheel["m"]
-        * 9.81
-        * wheel["r_0"]
-        * wheel["J_x"]
-        / wheel["J_z"]
-        / (wheel["J_z"] + wheel["m"] * (wheel["r_0"] + wheel["r"]) ** 2)
-    )
+    limit = critical_spin(SimpleNamespace(**wheel))
     assert 3 * limit < high < 12 * limit
     assert live.evaluate("page.stage.models[0].look.kind") == {"tyre": "wheel"}.get(body, body)
 
@@ -392,13 +382,6 @@ def test_a_push_accelerates_the_wheel_along_e1_or_against_it(live, spin):
         assert after - before == pytest.approx(sign * 0.2 * 6 * 0.35 / (1.8 + 20 * 0.35**2))
         button.dispatch_event("pointerup", {"pointerId": 0})
         live.evaluate("page.lesson.frame()")
-
-
-def test_a_change_drops_what_was_planned_for_later(live):
-    start(live)
-    do(live, 2, M_3=-2)
-    do(live, 1, M_3=0)
-    assert live.evaluate("page.lesson.plan.changes.map(({t, value}) => [t, value])") == [[1, 0]]
 
 
 def test_a_button_leads_back_to_the_steps_own_start(live):

@@ -1,5 +1,7 @@
 """The pictures of the lesson: every arrow, bar, band and circle is a quantity of the FMU."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -107,7 +109,7 @@ def test_the_bars_are_the_two_moments_of_the_fmus_linearization(live, body, time
     start(live, body=body)
     wheel = parameters(live)
     m, g, r_0, J_x, J_z = (wheel[name] for name in ("m", "g", "r_0", "J_x", "J_z"))
-    spin = times_critical * float(np.sqrt(m * g * r_0 * J_x / J_z / (J_z + m * (r_0 + wheel["r"]) ** 2)))
+    spin = times_critical * critical_spin(SimpleNamespace(**wheel))
     change(live, spin=spin)
     seek(live, 0)
     shown, (found,), verdict = live.evaluate(BARS)
@@ -115,7 +117,6 @@ def test_the_bars_are_the_two_moments_of_the_fmus_linearization(live, body, time
     within(relative_error([found["tips"], found["rights"]], [m * g * r_0, rights]), 1e-5, "moments per radian")
     within(relative_error(shown, [found["tips"], found["rights"]]), 1e-9, "bars")
     assert verdict == {0.5: "tipped", 1.0: "equal: the critical spin", 2.0: "righted"}[times_critical]
-    assert body != "tyre" or spin / times_critical == pytest.approx(critical_spin(PAPER))
 
 
 def test_the_wheel_falls_where_the_bar_that_tips_is_the_longer_one(live):
@@ -206,15 +207,6 @@ def test_the_friction_circle_holds_the_roads_force_until_it_touches_the_outer_on
         radii, said, edge = live.evaluate(CIRCLE, t[k])
         assert radii == pytest.approx([mu_max * N[k], mu_slide * N[k]]) and max(radii) < edge
         assert said == pytest.approx(force[k], abs=0.51)
-
-
-def test_with_half_the_brake_the_force_never_leaves_the_outer_circle_and_the_wheel_stops_sooner(live):
-    stops = []
-    for brake in (100, 50):
-        open_step(live, 9, {"brake": brake})
-        v = column(live, "v_x")
-        stops.append(column(live, "time")[np.argmax(v < 1e-6)])
-    assert stops[1] < stops[0] and live.evaluate("page.wheels[0].phases.slides") == []
 
 
 @pytest.mark.parametrize(

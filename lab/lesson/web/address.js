@@ -50,10 +50,7 @@ export class Link {
     return write(step, chosen, steps[step].start);
   }
 
-  /** The whole link. */
-  get href() { return `${location.href.split('#')[0]}#${this.write()}`; }
-
-  /** Writes an address; a page inside another may not, and its button still copies the link. */
+  /** Writes an address, which a page inside another may not. */
   put(text, how = 'replaceState') {
     try {
       history[how](null, '', `#${text}`);

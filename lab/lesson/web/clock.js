@@ -82,8 +82,8 @@ export function setUpSwitches(stage, changed) {
 const PRESSED = 'button, select, input[type=checkbox], input[type=radio]';  // by the space bar
 const MOVED = 'input, select, canvas';  // by arrow keys; of the canvas, the scene turns
 
-/** The page's keys: those here, and for the rest the button that has the key as its shortcut. Fields keep their own. */
-export function setUpKeys({player, stage, plots}) {
+/** The page's keys: those here, else the button in sight that has the key as its shortcut. Fields keep their own. */
+export function setUpKeys({player, stage}) {
   const seek = (by) => ({shiftKey}) => player.seek(player.t + (shiftKey ? 10 : 1) * by);
   const keys = {
     'arrowleft': seek(-0.05),
@@ -93,15 +93,15 @@ export function setUpKeys({player, stage, plots}) {
     '+': () => player.shift(1),
     '-': () => player.shift(-1),
     'r': () => stage.controls.reset(),
-    'd': () => plots.next(),
   };
   addEventListener('keydown', (event) => {
     const key = event.key === ' ' ? 'space' : event.key.toLowerCase();
     const kept = key === 'space' ? PRESSED : key.length > 1 ? MOVED : '_';
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.(`${kept}, .number`)) return;
     const button = $(`[aria-keyshortcuts="${CSS.escape(key)}" i]`);
-    if (!button && !keys[key]) return;
-    button ? button.click() : keys[key](event);
+    const act = button?.checkVisibility() ? () => button.click() : keys[key];
+    if (!act) return;
+    act(event);
     event.preventDefault();
   });
   // A button that was clicked does not keep the focus: the space bar plays, and does not click it again.

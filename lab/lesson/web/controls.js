@@ -11,7 +11,7 @@ const UPRIGHT = Math.PI / 2;
 
 /** m g (r_0 + r) of a wheel over that of the paper's. */
 const weight = (value) => value('m') * value('g') * (value('r_0') + value('r'));
-export const strength = (wheel) => weight((name) => wheel[name]) / weight((name) => variables[name].start);
+const strength = (wheel) => weight((name) => wheel[name]) / weight((name) => variables[name].start);
 
 /** A quantity: symbol, unit, meaning, and range(wheel): lowest, highest; step: of the slider. */
 const control = (symbol, unit, what, range, limits) => ({symbol, unit, what, range, limits});
@@ -110,7 +110,7 @@ const HELD = [
   ['push forward ▶', 'M_3', -1, 'Torque about the axle, forward'],
 ];
 /** Their torque, N m: 6 N m for the paper's wheel, for others as their weight times radius. */
-export const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
+const torqueOf = (wheel) => Number((6 * strength(wheel)).toPrecision(6));
 
 function makeHeld([text, name, part, what], lesson) {
   let before = null;  // the value to return to; null while the button is not held

@@ -11,7 +11,8 @@ const HOLD = ['tau', 'omega_z_dot', 'theta', 'lambda_3', 's', 'M_brake'];
 
 /**
  * A curve over time: the columns it needs, and its values from theirs and the wheel, of which the second is dashed.
- * band: the second is the limit of a band about zero; whole: the axis while the future is a secret.
+ * band: the second is the limit of a band about zero; second: its colour beside one wheel's own; whole: the axis while
+ * the future is a secret.
  */
 const curve = (title, unit, digits, columns, what, values, more) => ({
   form: 'time',
@@ -24,6 +25,10 @@ const curve = (title, unit, digits, columns, what, values, more) => ({
   ...more
 });
 
+/** A point [x, y] over another quantity; even: both axes have one scale. */
+const plane = (title, units, columns, what, point, more) =>
+    ({form: 'plane', title, unit: '', units, columns, what, point, ...more});
+
 const guided = ({parameters}) => Boolean(parameters.guided);
 /** Whether a wheel is upright until its first slide ends. */
 const upright = ({table: {columns: {time, theta}}, phases: {slides}}) =>
@@ -35,7 +40,7 @@ const moves = ({table}, name) => {
   return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
 };
 
-export const CURVES = {
+export const KINDS = {
   lean: curve(
       'lean 90° − θ', '°', 1, ['theta'], 'Lean: angle of the wheel to the vertical, 90° where it lies flat,',
       ([theta]) => [90 - DEGREES * theta], {fits: (wheel) => moves(wheel, 'theta'), whole: [0, 90]}),
@@ -54,7 +59,7 @@ export const CURVES = {
       ([X_dot, Y_dot, psi, theta, psi_dot, omega_z], {parameters: {r_0, r}}) =>
           [X_dot * Math.cos(psi) + Y_dot * Math.sin(psi),
            r * Math.cos(theta) * psi_dot * Math.sin(theta) - (r_0 + r * Math.sin(theta)) * omega_z],
-      {fits: brakes}),
+      {fits: brakes, second: '--turn'}),
   load: curve(
       'wheel load N', 'N', 0, ['lambda_3'], 'Wheel load', ([N]) => [N], {fits: (wheel) => moves(wheel, 'lambda_3')}),
   carrier: curve(
@@ -70,13 +75,6 @@ export const CURVES = {
         return [hold, most];
       },
       {band: true}),
-};
-
-/** A point [x, y] over another quantity; even: both axes have one scale. */
-const plane = (title, units, columns, what, point, more) =>
-    ({form: 'plane', title, unit: '', units, columns, what, point, ...more});
-
-export const PLANES = {
   path: plane(
       'path from above', ['m', 'm'], ['X_O', 'Y_O', 'psi', 'theta'],
       'Path of the contact point on the ground, from above', (values, {parameters: {r_0}}) => contactOf(r_0, ...values),
@@ -84,30 +82,25 @@ export const PLANES = {
   phase: plane(
       'rate of θ over θ', ['°', '°/s'], ['theta', 'theta_dot'],
       'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
-      (values) => values.map((value) => value * DEGREES), {fits: (wheel) => moves(wheel, 'theta')}),
+      (values) => values.map((value) => value * DEGREES)),
+  circle: {
+    form: 'circle',
+    title: 'friction circle',
+    unit: 'N',
+    columns: ['lambda_x', 'lambda_y', 'lambda_3', 'slip_x', 'slip_y'],
+    what: 'Friction circle: the force of the road along it, forward up, within the most that grip and sliding have',
+  },
+  bars: {
+    form: 'bars',
+    title: 'moments per radian of lean',
+    unit: 'N m',
+    columns: [],
+    what: 'Moments per radian of lean of the wheel that rolls upright: one that tips it, and one that rights it',
+  },
 };
 
-export const CIRCLE = {
-  form: 'circle',
-  title: 'friction circle',
-  unit: 'N',
-  columns: ['lambda_x', 'lambda_y', 'lambda_3', 'slip_x', 'slip_y'],
-  what: 'Friction circle: the force of the road along it, forward up, within the most that grip and sliding have',
-};
-export const BARS = {
-  form: 'bars',
-  title: 'moments per radian of lean',
-  unit: 'N m',
-  columns: [],
-  what: 'Moments per radian of lean of the wheel that rolls upright: one that tips it, and one that rights it',
-  fits: ({perRadian}) => Boolean(perRadian),
-};
-export const KINDS = {
-  ...CURVES,
-  ...PLANES,
-  circle: CIRCLE,
-  bars: BARS
-};
+/** The diagrams of recorded wheels that have something to show. */
+export const RECORDED = ['lean', 'spin', 'speeds', 'load', 'carrier', 'energy', 'path'];
 
 /** Whether a kind has something to show of a wheel. */
 export const fits = (kind, wheel) =>

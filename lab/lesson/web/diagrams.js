@@ -1,7 +1,7 @@
 // All diagrams. Over time: the past is a thick line, the future a thin one, and held or sliding is marked on the axis.
 // They share the clock, and keep their axes while the reader pushes the wheel. Angles in degrees, all else SI.
-import {fits, KINDS, PLANES} from '#curves';
-import {clearCanvas, colour, fixed, make, makeChoice, subscripted, write} from '#dom';
+import {fits, KINDS, RECORDED} from '#curves';
+import {clearCanvas, colour, fixed, make, subscripted, write} from '#dom';
 import {contact} from '#pictures';
 import {before, extent, roundUp} from '#table';
 
@@ -173,6 +173,12 @@ class Curve extends Diagram {
     ];
   }
 
+  /** The colour of the first (0) or second (1) curve of wheel k. */
+  hue(k, i) {
+    const {kind: {second}, wheels} = this;
+    return i && second && wheels.length === 1 ? colour(second) : wheels[k].colour;
+  }
+
   /** The line of wheel k, with a cross where its motion ended; of a band, its limits. */
   stroke(pen, k, points, width) {
     const {wheels: {[k]: {colour: own, ended, phases, table}}, kind} = this;
@@ -188,7 +194,7 @@ class Curve extends Diagram {
       for (const [begin, end] of sticks) this.line(pen, part(1).filter(([t]) => t >= begin && t <= end), 7, held);
     }
     this.line(pen, part(1), width, own);
-    if (!kind.band && points[0].length > 2) this.line(pen, part(2), width, own, DASHES);
+    if (!kind.band && points[0].length > 2) this.line(pen, part(2), width, this.hue(k, 1), DASHES);
     if (!ended) return;
     const [x, y] = [this.x(table.end), this.y(points.at(-1)[1])];
     Object.assign(pen, {lineWidth: 1.6, strokeStyle: own}).beginPath();
@@ -266,8 +272,8 @@ class Curve extends Diagram {
     pen.fillRect(this.x(t) - 0.5, TOP - 4, 1, this.sizes[1] + 4);
     if (this.sketch) this.line(pen, this.sketch, 2, colour('--ink'), DASHES);
     const present = wheels.map((wheel) => this.valuesAt(wheel, t).slice(0, kind.band ? 1 : 2));
-    present.forEach((all, k) => all.forEach((value) => this.dot(pen, t, value, wheels[k].colour)));
-    this.show(present.flatMap((all, k) => all.map((value) => [value, wheels[k].colour])));
+    present.forEach((all, k) => all.forEach((value, i) => this.dot(pen, t, value, this.hue(k, i))));
+    this.show(present.flatMap((all, k) => all.map((value, i) => [value, this.hue(k, i)])));
   }
 
   /** The values [[number, colour], ...] in the caption. */
@@ -358,15 +364,17 @@ class Circle extends Diagram {
     this.middle = [width / 2 - 40, height / 2];
   }
 
-  ring(radius, strokeStyle, name, place, dashes = []) {
+  /** A circle, with its name beside it at `side` of the outer one: -1 above, 1 below. */
+  ring(radius, name, side, rim, dashes = []) {
     const {pen, scale, middle: [x, y]} = this;
+    const strokeStyle = colour('--soft');
     Object.assign(pen, {strokeStyle, lineWidth: 1.6}).setLineDash(dashes);
     pen.beginPath();
     pen.arc(x, y, scale * radius, 0, 7);
     pen.stroke();
     pen.setLineDash([]);
     Object.assign(pen, {fillStyle: strokeStyle, textAlign: 'left', textBaseline: 'middle'});
-    write(pen, `${name} = ${fixed(radius, radius < 10 ? 2 : 0)} N`, this.width / 2 + this.height / 2 - 30, place, 12);
+    write(pen, `${name} = ${fixed(radius, radius < 10 ? 2 : 0)} N`, x + rim + 8, y + side * rim, 12);
   }
 
   draw(t) {
@@ -380,8 +388,9 @@ class Circle extends Diagram {
     pen.fillRect(middle[0] - height / 2, middle[1], height, 1);
     pen.fillRect(middle[0], 0, 1, height);
     if (outer > 0) {
-      this.ring(mu_max * at('lambda_3'), colour('--soft'), 'μ_max N', 18);
-      this.ring(mu_slide * at('lambda_3'), colour('--soft'), 'μ_slide N', height - 14, DASHES);
+      const rim = scale * outer * at('lambda_3') * Math.SQRT1_2;
+      this.ring(mu_max * at('lambda_3'), 'μ_max N', -1, rim);
+      this.ring(mu_slide * at('lambda_3'), 'μ_slide N', 1, rim, DASHES);
     }
     const {time} = wheel.table;
     const {lambda_x, lambda_y} = wheel.table.shown;
@@ -447,51 +456,22 @@ const FORMS = {
 
 export class Plots {
   constructor(host, player) {
-    Object.assign(this, {host, player, axis: 'fitted', all: [], portrait: 'path', wheels: []});
+    Object.assign(this, {host, player, axis: 'fitted', all: [], wheels: []});
     new ResizeObserver(() => this.prepare()).observe(host);
   }
 
   /** Shows wheels [{table, phases, trace, colour}] in diagrams by name; without names in those that they fit. */
-  show(wheels, names = this.fitting(wheels)) {
+  show(wheels, names = RECORDED.filter((name) => wheels.some((wheel) => fits(KINDS[name], wheel)))) {
     const key = names.join();
     this.wheels = wheels;
     if (key !== this.key) {
       this.key = key;
       this.host.replaceChildren();
       this.all = names.map((name) => new FORMS[KINDS[name].form](this.host, this.player, KINDS[name]));
-      this.choosePlane(names);
     }
     for (const one of this.all)
       one.wheels = wheels.filter((wheel) => one.kind.columns.every((name) => wheel.table.has(name)));
     this.prepare();
-  }
-
-  /** Diagrams of recorded wheels. */
-  fitting(wheels) {
-    const curves = ['lean', 'spin', 'speeds', 'load', 'carrier', 'energy'];
-    this.planes = Object.keys(PLANES).filter((name) => wheels.some((wheel) => fits(KINDS[name], wheel)));
-    if (!this.planes.includes(this.portrait)) this.portrait = this.planes[0];
-    return [...curves.filter((name) => wheels.some((wheel) => fits(KINDS[name], wheel))), this.portrait];
-  }
-
-  /** Of recorded wheels the last diagram can be chosen. */
-  choosePlane(names) {
-    if (!this.planes || this.planes.length < 2) return;
-    const host = make('span', {className: 'segments', role: 'radiogroup', ariaLabel: 'Diagram'});
-    const options = this.planes.map((name) => ({name, label: name, title: `${PLANES[name].what} (key D)`}));
-    makeChoice(host, options, (name) => this.choose(name))(names.at(-1));
-    this.all.at(-1).name.replaceChildren(host);
-  }
-
-  choose(name) {
-    this.portrait = name;
-    this.show(this.wheels);
-  }
-
-  /** The next plane of recorded wheels. */
-  next() {
-    const {planes = []} = this;
-    if (planes.length > 1) this.choose(planes[(planes.indexOf(this.portrait) + 1) % planes.length]);
   }
 
   /** Whether the future is a secret, until the reader has guessed; draws: into the diagram of the lean. */

@@ -92,10 +92,10 @@ export class Lesson {
     Object.assign(page.plots, {axis: 'fitted'});
     page.player.set({playing: false, t: 0, speed});
     this.wheel.label = names[0];
-    page.wheels = [this.wheel, ...(beside ? [{name: 'beside', label: names[1]}] : [])];
+    page.wheels = [this.wheel, ...(beside ? [{name: 'beside', label: names[1], hue: 2}] : [])];
     this.run();
     page.choice = 0;
-    page.offer(page.wheels.length);
+    page.offer();
     page.switches.flip('axes', Boolean(axes));
     page.stage.stand(eye ?? 'beside');
     if (ask && !Object.keys(chosen).length) this.guess = {asks: true};
@@ -196,6 +196,7 @@ export class Lesson {
   pick(fate) {
     this.guess.picked = fate;
     this.page.player.play();
+    $('#play').focus();  // the answers, of which one had the focus, are gone
   }
 
   /** The motion plays, and answers what the step asks; then it rests, so that the answer can be read. */

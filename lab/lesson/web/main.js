@@ -18,15 +18,15 @@ $('#blocked').remove();  // its sentence is for a browser that does not come so 
 const CALM = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /**
- * What one can look at, [{label, views: lists of wheels}]: all together, those of several sources rather side by side,
- * and each alone.
+ * What one can look at, [{label, views: lists of wheels}]: all together, those of several files rather side by side,
+ * and each alone; wheels of the lesson stand side by side.
  */
-function choicesOf(wheels, sources) {
-  if (wheels.length === 1) return [{label: wheels[0].label, views: [wheels]}];
+function choicesOf(wheels) {
+  const beside = {label: 'Side by side', views: wheels.map((wheel) => [wheel])};
+  if (live || wheels.length === 1) return [beside];
   const alone = wheels.map((wheel) => ({label: wheel.label, views: [[wheel]]}));
   const together = {label: 'Together', views: [wheels]};
   if (wheels.length > 3) return [together, ...(wheels.length <= 8 ? alone : [])];
-  const beside = {label: 'Side by side', views: wheels.map((wheel) => [wheel])};
   return [...(sources === 1 ? [together, beside] : [beside, together]), ...alone];
 }
 
@@ -59,7 +59,7 @@ class Page {
     setUpTransport(this.player);
     setUpKeys(this);
     setUpTaking(this);
-    this.offer(sources);
+    this.offer();
     this.dress();
     // The colours are the system's, and on paper the light ones.
     for (const query of ['(prefers-color-scheme: dark)', 'print'])
@@ -73,9 +73,9 @@ class Page {
     requestAnimationFrame((now) => this.frame(now));
   }
 
-  /** The buttons for what one can look at. sources: how many files or runs the wheels come from. */
-  offer(sources) {
-    this.choices = choicesOf(this.wheels, sources);
+  /** The buttons for what one can look at. */
+  offer() {
+    this.choices = choicesOf(this.wheels);
     const options =
         this.choices.map(({label}, name) => ({name, label, title: `Show: ${label} (key ${name + 1})`, key: name + 1}));
     $('#choice').hidden = options.length < 2;
@@ -86,7 +86,7 @@ class Page {
   dress() {
     this.stage.dress();
     this.stage.zoom(this.size);
-    this.wheels.forEach((wheel, i) => (wheel.colour = colour(`--wheel-${i % 6}`)));
+    this.wheels.forEach((wheel, i) => (wheel.colour = colour(`--wheel-${wheel.hue ?? i % 6}`)));
     this.stage.put(this.wheels.map((wheel) => new WheelModel(wheel, this.size)));
     this.choose(this.choice);
   }

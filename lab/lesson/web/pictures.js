@@ -83,7 +83,7 @@ export function perRadian(fmu, values) {
  */
 const picture = (needs, arrows, fits = () => true) => ({needs, arrows, fits});
 
-export const PICTURES = {
+const PICTURES = {
   precession: picture(
       ['psi_dot', 'omega_z'],
       (wheel, at) => {

@@ -5,11 +5,16 @@ import {DEGREES, live} from '#dom';
 import {contact, criticalSpin, GHOST} from '#pictures';
 import {extent} from '#table';
 
-export const MEASURE = 20;  // degrees of lean, from which on a wheel counts as one that does not stay up
+const MEASURE = 20;  // degrees of lean, from which on a wheel counts as one that does not stay up
 const PAPER = {
   lean: 15,
   spin: 2
 };
+
+/** A symbol in the colour of its arrow. */
+const arrow = (symbol, own) => `<b style="color:var(--${own})">${symbol}</b>`;
+const [L, M, dL, N] = [['L', 'momentum'], ['M', 'tips'], ['dL', 'tips'], ['N', 'force']].map((one) => arrow(...one));
+const [V, TURN, SLIP] = [['v', 'v'], ['R ω<sub>z</sub>', 'turn'], ['slip', 'slide']].map((one) => arrow(...one));
 
 const leansOf = ({table}) => table.columns.theta.map((theta) => Math.abs(90 - DEGREES * theta));
 /** The largest lean of a motion, in degrees. */
@@ -56,7 +61,7 @@ export function stepsOf() {
       text: (wheel) => `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide there.
         So its spin of ${spin(wheel).toFixed(2)} rad/s times its radius of ${(r_0 + r).toFixed(2)} m is its speed,
         ${Math.abs(at(wheel, 0)('v_x')).toFixed(2)} m/s. Half a degree of lean is enough: at ${leans(wheel, 5)} s it
-        leans by 5°, and comes down. Not every wheel does. The next steps show why.`,
+        leans by 5°, and goes on to ${lean(wheel)}°. Not every wheel does. The next steps show why.`,
       attempt: 'At the start, hold <b>push forward ▶</b> for a second: it stays up.',
     },
     {
@@ -66,9 +71,9 @@ export function stepsOf() {
       picture: 'precession',
       diagrams: ['lean', 'path'],
       eye: 'behind',
-      text: (wheel) => `The weight tips the wheel: its moment <b>M</b> about the contact points along e<sub>1</sub>. The
-        rolling wheel has an angular momentum <b>L</b> along its axle. M acts across L, so it does not make L longer: it
-        adds <b>dL</b> at its tip and turns it, and with it the axle (the ring: ${
+      text: (wheel) => `The weight tips the wheel: its moment ${M} about the contact points along e<sub>1</sub>. The
+        rolling wheel has an angular momentum ${L} along its axle. M acts across L, so it does not make L longer: it
+        adds ${dL} at its tip and turns it, and with it the axle (the ring: ${
           GHOST} s ahead). The wheel turns towards its lean, runs
         in a circle, and never leans by more than ${lean(wheel)}°.`,
       attempt:
@@ -92,7 +97,7 @@ export function stepsOf() {
         return `To turn L takes a moment, and what turns the wheel does not tip it. For a small lean, each radian of it
           brings a moment that tips, m g r<sub>0</sub> = ${tips.toFixed(1)} N m, and a turn whose moment rights:
           (J<sub>z</sub> + m R²)(J<sub>z</sub>/J<sub>x</sub>) ω² = ${(rights / spin(wheel) ** 2).toFixed(1)} ω²
-          N m, R = r<sub>0</sub> + r. One does not know the spin, the other grows with its square.`;
+          N m, R = r<sub>0</sub> + r. The first does not depend on the spin, the second grows with its square.`;
       },
       attempt: 'Drag the spin until both bars are equal. Which spin is it?',
     },
@@ -144,10 +149,11 @@ export function stepsOf() {
       picture: 'resistance',
       diagrams: ['spin', 'hold'],
       eye: 'abreast',
-      text: ({table, phases: {sticks: [[begin]], transitions}}) => `The ground gives way: its force N acts ahead of the
+      text: ({table, phases: {sticks: [[begin]], transitions}}) =>
+          `The ground gives way: its force ${N} acts ahead of the
         contact, by s = 0.03 m. So it has a moment s N about the axle, against the spin. At ${
-          begin.toFixed(2)} s the spin
-        is used up. From then on N moves only as far as it takes to hold the spin at zero (orange); where that takes
+              begin.toFixed(2)} s the spin
+        is used up. From then on N moves only as far as it takes to <b class="stick">hold</b> the spin at zero; where that takes
         more than s N (the band), the wheel is released. In ${table.end.toFixed(0)} s it is held, released or reversed
         ${transitions.length} times.`,
       attempt: 'Lower s: the band gets narrow, and the first stop comes later.',
@@ -167,7 +173,7 @@ export function stepsOf() {
         ${whileHeld(wheel, 'time').toFixed(2)} s, its heading turns by ${
               (DEGREES * whileHeld(wheel, 'psi')).toFixed(0)}°. A
         moment does no work where nothing turns about its axis: E stays level while the wheel is held.`,
-      attempt: 'Look at E where the wheel is held (orange), and where it is not.',
+      attempt: 'Look at E where the wheel is <b class="stick">held</b>, and where it is not.',
     },
     {
       title: 'Pushed and braked',
@@ -200,7 +206,7 @@ export function stepsOf() {
           force, until it touches the outer circle, μ<sub>max</sub> N, at ${begin.toFixed(2)} s. There the grip is lost:
           the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${
             (locked - begin).toFixed(2)} s
-          later the wheel is locked: R ω<sub>z</sub> is zero, and the slip is v. It slides
+          later the wheel is locked: ${TURN} is zero, and the ${SLIP} is ${V}. It slides
           ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${
             (wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
       },
@@ -217,9 +223,9 @@ export function stepsOf() {
       text: (wheel) => {
         const end = wheel.phases.slides[0][1];
         const {v: [v], turn: [turn], slip: [slip]} = contact(wheel.parameters, at(wheel, 0));
-        return `Thrown forward at v = ${v.toFixed(1)} m/s and spinning backward, R ω<sub>z</sub> = ${
+        return `Thrown forward at ${V} = ${v.toFixed(1)} m/s and spinning backward, ${TURN} = ${
             turn.toFixed(1)} m/s, the wheel
-          touches the road with a slip of ${
+          touches the road with a ${SLIP} of ${
             slip.toFixed(1)} m/s: the sum of both. The road's force acts against the slip,
           μ<sub>slide</sub> N on the inner circle; it brakes v and the backspin alike. At ${end.toFixed(2)} s their
           sum is zero: the wheel rolls, and comes back at ${(-at(wheel, wheel.table.end)('v_x')).toFixed(2)} m/s.`;

@@ -1,4 +1,4 @@
-// The card "Export": the values, a picture, and of the lesson its link.
+// The card "Export": the values and a picture.
 import {$, colour, make, write} from '#dom';
 import {POSE} from '#table';
 
@@ -10,17 +10,6 @@ function save(download, blob) {
   const href = URL.createObjectURL(blob);
   make('a', {href, download}).click();
   setTimeout(() => URL.revokeObjectURL(href), 10_000);
-}
-
-async function copy(text, {currentTarget: button}) {
-  const before = button.textContent;
-  try {
-    await navigator.clipboard.writeText(text);
-    button.textContent = 'Copied';
-    setTimeout(() => (button.textContent = before), 1200);
-  } catch {  // a page opened from the disk has no clipboard in every browser
-    prompt('To copy:', text);
-  }
 }
 
 /**
@@ -62,7 +51,7 @@ function drawLabels(pen, {stage, shown}) {
 }
 
 /** The page at the present instant on a canvas: scene, key of the arrows, diagrams. */
-export function compose(page) {
+function compose(page) {
   const {stage, plots, player} = page;
   const {ratio} = stage;
   const {clientWidth: width, clientHeight: height} = stage.canvas;
@@ -98,5 +87,4 @@ export function setUpTaking(page) {
     const name = `wheel_${page.player.t.toFixed(2)}s.png`;
     compose(page).toBlob((blob) => save(name, blob), 'image/png');
   });
-  on('link', (event) => copy(page.lesson.link.href, event));
 }

@@ -2,7 +2,7 @@
 
 symbrim's fixed axes are x = X, y = -Y, z = -Z (down), its angles yaw = -psi, roll = theta - pi/2, pitch = phi about
 the axle. Its wheel has one moment of inertia across the axle; here its body is given two. Kane's equations leave the
-ground's force out; its normal part is asked for through an auxiliary speed. Rolling friction and brake are one open
+ground's force out; its normal part is asked for through an auxiliary speed. Rolling resistance and brake are one open
 moment tau about the axle, in which everything is linear.
 """
 

@@ -6,7 +6,7 @@ Needs Debian's python3-siconos and its Python alone. Scenes (paper's wheel, SI u
   rolls     the paper's free wheel, mu = 10
   slides    the same start, mu = 0.3: it slides from swing to swing
   backspin  thrown at a lean of 10 degrees with 2 m/s along e1 and backspin of 10 rad/s, mu = 0.3: it slides, then rolls
-  resists   upright and straight with -2 rad/s and s = 0.01 m: rolling friction as a moment of at most s N
+  resists   upright and straight with -2 rad/s and s = 0.01 m: rolling resistance as a moment of at most s N
 Each is run to its end with 2 ms, and with that step halved. A row: scene, step, X_O and Y_O at the end, computing time.
 """
 

@@ -150,7 +150,7 @@ def test_a_check_states_the_error_of_some_wheels_and_keeps_it_in_two_columns(
         out = tmp_path / f"{name}.zarr"
         assert main(["--vary", "s=0,0.01,0.03", "--tolerance", tolerance, "--out", str(out), "--csv", *where]) == 0
         said = capsys.readouterr().out
-        stated = float(re.search(r"Of 2 wheels run again by another solver .* is at most (\S+) of", said)[1])
+        stated = float(re.search(r"Of 2 wheels run again with another solver .* is at most (\S+) of", said)[1])
         error = xr.open_zarr(out, consolidated=False)["check_error"].values
         assert np.isfinite(error).sum() == 2
         within(abs(stated / np.nanmax(error) - 1), 0.1, "error stated beside that in the table, relative")

@@ -1,4 +1,4 @@
-"""Drives the car of examples/vehicles through a manoeuvre, or runs the wheel for a control engineer: NAME is one of"""
+"""Builds and runs a vehicle of examples/vehicles, or the wheel for a control engineer: NAME is one of"""
 
 import sys
 from argparse import Namespace
@@ -12,23 +12,38 @@ from wheelfmu.fmu.values import Fault, suggestion
 
 CONTROL = ROOT / "lab" / "vehicles" / "control.py"
 # Each example that is here.
-NAMES = {name: f"the car, {run.title}" for name, run in MANOEUVRES.items() if (EXAMPLES / "package.py").exists()}
+NAMES = {"car": "four wheels, a chassis and a driver", "suspended": "a quarter car on its wheel"}
+NAMES = NAMES if (EXAMPLES / "package.py").exists() else {}
 NAMES |= {"control": "the wheel: linearization, regulator, optimal control"} if CONTROL.exists() else {}
-__doc__ = "\n".join([__doc__, "", *(f"  {name:10s}{about}" for name, about in NAMES.items())])
+ABOUT = [f"  {name:10s}{about}" for name, about in NAMES.items()]
+if "car" in NAMES:
+    ABOUT += ["", "The car's MANOEUVRE is one of", ""]
+    ABOUT += [f"  {name:10s}{run.title}" for name, run in MANOEUVRES.items()]
+__doc__ = "\n".join([__doc__, "", *ABOUT])
 
 
-def example(name: str) -> str:
+def one_of(names: dict[str, str], what: str, typed: str) -> str:
     """A name; Fault if there is none such."""
-    if name not in NAMES:
-        there = f"there are {', '.join(NAMES)}." if NAMES else "examples/vehicles and control.py are not here."
-        raise Fault(f'there is no example "{name}"; {there}{suggestion(name, dict.fromkeys(NAMES, ""))}')
-    return name
+    if typed not in names:
+        there = f"there are {', '.join(names)}." if names else "examples/vehicles and control.py are not here."
+        raise Fault(f'there is no {what} "{typed}"; {there}{suggestion(typed, dict.fromkeys(names, ""))}')
+    return typed
 
 
-OPTIONS = {"name": {"metavar": "NAME", "type": example}}
+OPTIONS = {
+    "name": {"metavar": "NAME", "type": lambda typed: one_of(NAMES, "example", typed)},
+    "manoeuvre": {
+        "metavar": "MANOEUVRE",
+        "nargs": "?",
+        "type": lambda typed: one_of(dict.fromkeys(MANOEUVRES, ""), "manoeuvre", typed),
+        "help": "of the car; if not given, lane",
+    },
+}
 
 
 def needs(given: Namespace) -> list[str]:
+    if given.manoeuvre and given.name != "car":
+        raise Fault(f"{given.name} has no manoeuvres: leave {given.manoeuvre} out.")
     return ["vehicles"] * (given.name == "control")
 
 
@@ -40,4 +55,4 @@ def main(given: Namespace) -> int:
             return processes.status(sys.executable, "-P", *words)
         from lab.vehicles.example import main as run
 
-        return run(given.name)
+        return run(given.name, given.manoeuvre or "")

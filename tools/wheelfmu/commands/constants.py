@@ -1,7 +1,7 @@
-"""Measures the consequence of half and double of each chosen constant of the solver, and writes docs/constants.md.
+"""Halves and doubles each chosen constant of the solver, and writes the consequences into docs/constants.md.
 
-./scripts/constants           fails where one leads beyond the stated factors
-./scripts/constants --check   the same, and writes nothing
+./scripts/constants           fails if a constant leads beyond the stated factors
+./scripts/constants --check   does the same but writes nothing
 """
 
 import sys
@@ -12,7 +12,7 @@ from wheelfmu.commands.build import build
 from wheelfmu.fmu.paths import ROOT
 
 NEEDS = ("test",)
-OPTIONS = {"--check": {"action": "store_true", "help": "measures alone"}}
+OPTIONS = {"--check": {"action": "store_true", "help": "writes nothing"}}
 
 
 def main(given: Namespace) -> None:

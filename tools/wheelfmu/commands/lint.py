@@ -12,8 +12,8 @@ from wheelfmu.fmu.values import Fault
 
 NEEDS = ("check",)
 OPTIONS = {
-    "--fix": {"action": "store_true", "help": "formats the files, and mends what ruff can, instead"},
-    "files": {"nargs": "*", "metavar": "FILE", "help": "these alone, without types and imports; a pattern of git"},
+    "--fix": {"action": "store_true", "help": "format the files and mend what ruff can, instead of checking"},
+    "files": {"nargs": "*", "metavar": "FILE", "help": "check these or a pattern of git, without types, imports"},
 }
 GERSEMI = ("gersemi", "--line-length", "120", "--indent", "2")
 RUFF = ("ruff", "check", "-q", "--no-cache")  # its cache misses a folder that becomes a package or ceases to be one

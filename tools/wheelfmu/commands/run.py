@@ -1,39 +1,40 @@
 """Builds the FMU, simulates the paper's wheel or a different one, and draws the diagrams.
 
-  ./scripts/run                             the paper's two scenes: without and with rolling resistance, s = 0.03 m
-  ./scripts/run v=18km/h                    a vehicle's wheel: upright, forward along X, from the origin
-  ./scripts/run s=0.01 theta_start=60deg    other values, in both scenes; without resistance s stays 0
-  ./scripts/run body=torus m=12kg           a homogeneous body, whose moments of inertia follow from m, r_0 and r
+  ./scripts/run                             the paper's two scenes, without and with rolling resistance (s = 0.03 m)
+  ./scripts/run v=18km/h                    a vehicle's wheel that starts upright at the origin, along X
+  ./scripts/run s=0.01 theta_start=60deg    other values in both scenes, where the first keeps s = 0
+  ./scripts/run m=12kg J_x=0.56 J_y=0.56 J_z=1.1   a lighter wheel, with its moments of inertia in kg m2
   ./scripts/run slope=12% r_0=30cm          units: kg g, m mm cm, s ms, m/s km/h, rad deg, N kN, N.m; % for the slope
-  ./scripts/run M_brake=20 stop_time=20     an input, constant over the run; a longer run
-  ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road: the wheel slides where rolling would need more than mu_max
-  ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   on its carrier: a locked wheel slides
-  ./scripts/run guided=true v=10m/s psi_dot_guide=0.5 mu_max=0.3 mu_slide=0.25   steered: a turn that slides out
+  ./scripts/run M_brake=20 stop_time=20     an input that is constant over the run, and a longer run
+  ./scripts/run mu_max=0.45 mu_slide=0.4    a wet road, on which the wheel slides
+  ./scripts/run guided=true v=30km/h M_brake=400 mu_max=0.5 mu_slide=0.4   on a carrier, locked and sliding
+  ./scripts/run guided=true v=10m/s psi_dot_guide=0.5 mu_max=0.3 mu_slide=0.25   steered into a slide
   ./scripts/run coin                        a preset wheel
-  ./scripts/run backspin                    a preset case: a hoop that slides, rolls and comes back
-  ./scripts/run s=0.01 error=methods        error over computing time of every method in these scenes
+  ./scripts/run backspin                    a preset case, a hoop that slides, rolls and comes back
+  ./scripts/run s=0.01 error=methods        a diagram of error against computing time for every method
 
-It installs, builds, leaves wheel.fmu here, simulates both scenes with the fmpy command line, and writes into
-results/: wheel.html, a 3D page of the motion; the diagrams; free.csv and friction.csv. Any parameter or input of
-docs/variables.md can be given, each once. A warning names moments of inertia that no mass within the wheel's outline
-has. The error of both runs is estimated by another solver (docs/recipes.md). An input keeps its value for the whole
-run; docs/in_your_tool.md shows one that varies.
+The command installs what is missing, builds wheel.fmu and leaves it here. It simulates both scenes with the fmpy
+command line and writes into results/ the diagrams, the tables free.csv and friction.csv, and wheel.html, a 3D page of
+the motion. It estimates the error of both runs with another solver (docs/recipes.md).
 
-The first run takes about a minute: it installs missing Debian packages (a C++ build, Python's venv), puts Python
+Any parameter or input of docs/variables.md can be given, each once. An input keeps its value for the whole run, and
+docs/in_your_tool.md shows one that varies. If no body within the wheel's outline has the given moments of inertia, a
+warning says so.
+
+The first run takes about a minute. It installs missing Debian packages (a C++ build, Python's venv), puts Python
 packages into .venv, and compiles. cargo is among the packages because it downloads the pinned source of SUNDIALS, the
-solver.
+second solver.
 
-With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r); all but the last can be
-given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m, Y_O = 0, whatever its
-radii: give X_O_start, Y_O_start.
+With v the wheel starts at psi = 0, theta = 90 deg, X_O = Y_O = 0 and phi_dot = -v/(r_0 + r). All but the last can be
+given too. With v=0 it stands. Without v or a preset it starts at the paper's X_O = -0.0776 m and Y_O = 0, whatever its
+radii. Give X_O_start and Y_O_start to change that.
 
-With a preset, other values scale with the radius R = r_0 + r: s is 0.03 m R / 0.35 m,
-phi_dot_start is -2 rad/s sqrt(0.35 m / R), stop_time is 10 s sqrt(R / 0.35 m). examples/wheels.json has its
-parameters and their sources.
+With a preset, other values scale with the radius R = r_0 + r: s is 0.03 m R / 0.35 m, phi_dot_start is
+-2 rad/s sqrt(0.35 m / R), and stop_time is 10 s sqrt(R / 0.35 m). examples/wheels.json has its parameters and their
+sources.
 
-Unless it is given, output_interval, between rows of the tables, is 10 ms, less for a small wheel, and at most a
-fortieth of the start's fastest period, of spin or nutation. The diagrams do not depend on it: they are read from the
-wheel itself.
+output_interval is the time between rows of the tables. Unless it is given, it is 10 ms, less for a small wheel, and at
+most a fortieth of the fastest period of spin or nutation at the start. The diagrams do not depend on it.
 """
 
 import csv

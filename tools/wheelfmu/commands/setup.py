@@ -1,5 +1,5 @@
-"""Installs what commands need: Debian packages (as root by apt-get; otherwise it lists them), and in the folder .venv
-Python packages in the versions of requirements.lock. Other commands set themselves up."""
+"""Installs what commands need. As root it installs Debian packages with apt-get, otherwise it lists them. It puts
+Python packages into the folder .venv, in the versions of requirements.lock. Other commands set themselves up."""
 
 from argparse import Namespace
 
@@ -8,7 +8,7 @@ from wheelfmu.fmu.values import Fault, suggestion
 
 LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 WORDS = ["test", "all", "check", "tidy", "asan", "browser", "release", "platforms", *LAB]
-ABOUT = f"besides what ./scripts/run needs: {', '.join(WORDS)}; all is what ./scripts/test all needs, check the linters"
+ABOUT = f"a group besides what ./scripts/run needs: {', '.join(WORDS)} (all: ./scripts/test all; check: linters)"
 
 
 def word(text: str) -> str:

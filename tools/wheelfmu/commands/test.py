@@ -1,9 +1,9 @@
 """Runs the tests of the product. Exit status 0 only if all passed.
 
-./scripts/test          the product: equations, solver, motions, contract, diagrams, examples
-./scripts/test quick    after each change: all of them but diagrams and examples
-./scripts/test all      every check and test, the lab's too: formatting, lint and clang-tidy; the core again as on a
-                        processor without AVX2 and FMA; the contract and a minute of fuzzing under the sanitizers
+./scripts/test          the product: equations, solver, motions, contract, benchmark, diagrams, examples
+./scripts/test quick    the same without benchmark, diagrams and examples, to run after each change
+./scripts/test all      every check and test, also of the lab. This adds formatting, lint and clang-tidy, the core as on
+                        a processor without AVX2 and FMA, and the contract and a minute of fuzzing under the sanitizers
 """
 
 import os

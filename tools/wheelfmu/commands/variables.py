@@ -1,14 +1,15 @@
-"""Numbers modelDescription.xml anew after a variable has been added, moved or removed: the value references of new
-variables, all indices, GUID, ModelStructure with the dependencies measured on the built FMU, and the tables of
-docs/variables.md and of the FMU's page. Give a new variable no valueReference, and leave ModelStructure as it is.
-Numbers, builds, measures, builds again; a step that fails changes nothing."""
+"""Renumbers modelDescription.xml after a variable has been added, moved or removed.
+
+It writes the value references of new variables, all indices, the GUID, ModelStructure with the dependencies measured on
+the built FMU, and the tables of docs/variables.md and of the FMU's page. Give a new variable no valueReference, and
+leave ModelStructure as it is. If a step fails, nothing is changed."""
 
 from argparse import Namespace
 
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.paths import ROOT
 
-CHECK = "changes nothing and builds nothing; exit status 1 if a number or a table is stale"
+CHECK = "change and build nothing, and exit with status 1 if a number or a table is stale"
 OPTIONS = {"--check": {"action": "store_true", "help": CHECK}}
 DESCRIPTION, FMU = ROOT / "modelDescription.xml", ROOT / "build" / "release" / "wheel.fmu"
 

@@ -26,8 +26,9 @@ from matplotlib.textpath import TextPath
 from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
-from wheelfmu.diagrams.start_values import MOMENTS, PAPER_S, ROOT, RUN, doubt, values, variables
+from wheelfmu.diagrams.start_values import PAPER_S, ROOT, RUN, doubt, values, variables
 from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.values import MOMENTS
 from wheelfmu.truth.motion import Library
 
 SETTINGS = variables("parameter", "input")

@@ -11,14 +11,10 @@ from itertools import chain
 
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import (
-    MOMENTS,
     UPRIGHT,
     Fault,
     Variable,
-    bodies,
-    formula,
     interval,
-    moments,
     preset,
     scale,
     single,
@@ -56,9 +52,6 @@ def known() -> dict[str, Variable]:
 def usage() -> str:
     """The presets and all names."""
     presets = [f"  {name:20s}{wheel['title']}" for name, wheel in wheels().items()]
-    presets += ["", "Bodies, whose moments of inertia follow from m, r_0 and r:"]
-    for name, body in bodies().items():
-        presets.append(f"  {name:20s}{body['title']}: J_z = {formula(body['J_z'])}, J_x = J_y = {formula(body['J_x'])}")
     rows = [f"  {v.name:16s}{v.unit:8s}{v.start:>22s}   {v.description}" for v in known().values()]
     return "\n".join([*presets, "", "The values that can be given:", *rows])
 
@@ -71,31 +64,23 @@ def values(arguments: list[str]) -> dict[str, str]:
         name, equals, text = argument.partition("=")
         if name == "wheel" or (not equals and name in names):
             typed.append(("A preset wheel", text or name))
-        elif name == "body" or (not equals and name in bodies()):
-            typed.append(("A body", text or name))
         elif not equals:
-            meant = suggestion(name, dict.fromkeys([*names, *bodies()], ""))
-            kinds = "neither name=value nor a preset wheel or body"
-            raise Fault(f'"{argument}" is {kinds}.{meant} See ./scripts/run --help.')
+            meant = suggestion(name, dict.fromkeys(names, ""))
+            raise Fault(f'"{argument}" is neither name=value nor a preset wheel.{meant} See ./scripts/run --help.')
         elif name not in takes:
             meant = suggestion(name, {n: v.description for n, v in takes.items()})
             raise Fault(f'wheel.fmu has no parameter or input "{name}".{meant} ./scripts/run --help lists them.')
         else:
             typed.append((name, text))
     given = single(typed)
-    wheel, solid = (given.pop(kind, "") for kind in ("A preset wheel", "A body"))
+    wheel = given.pop("A preset wheel", "")
     given = {name: takes[name].value_of(text) for name, text in given.items()}
     if wheel:
         body = preset(wheel)
         body |= {"s": PAPER_S * scale(body, m=1)}
         body["stop_time"] = float(f"{10 * scale(body, s=1):.2g}")
         found = {name: repr(value) for name, value in (body | thrown(wheel)).items()}
-    if solid and (both := [name for name in MOMENTS if name in given]):
-        raise Fault(f"{both[0]} follows from m, r_0 and r with body={solid}: leave one of the two out.")
     found |= rolling(given, takes, found)
-    if solid:
-        size = {name: float(found.get(name, takes[name].start)) for name in ("m", "r_0", "r")}
-        found |= {name: repr(value) for name, value in moments(solid, **size).items()}
     if float(found.get("s", 1)) <= 0:
         raise Fault("s must be above 0 here: the scene without rolling resistance is drawn beside it anyway.")
     own = {name: takes[name].number_of(found.get(name, v.start)) for name, v in variables("parameter").items()}

@@ -285,13 +285,6 @@ def bodies() -> dict[str, dict[str, Any]]:
     return json.loads(BODIES.read_text(encoding="utf-8"))
 
 
-def formula(parts: Mapping[str, str]) -> str:
-    """`m (1/2 r_0^2 + 5/8 r^2)`, `1/2 m R^2`."""
-    if len(parts) == 1:
-        return "".join(f"{part} m {length}^2" for length, part in parts.items()).removeprefix("1 ")
-    return f"m ({' + '.join(f'{part} {length}^2'.removeprefix('1 ') for length, part in parts.items())})"
-
-
 def moments(body: str, m: float = 20.0, r_0: float = 0.3, r: float = 0.05) -> dict[str, float]:
     """J_x, J_y, J_z in kg m2 of a body of this mass in kg and these radii in m; of the paper's, if not given."""
     if body not in bodies():

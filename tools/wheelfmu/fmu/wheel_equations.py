@@ -77,7 +77,7 @@ LIBRARY.wheel_scene.argtypes = [POINTER(Parameters), POINTER(Load), Friction]
 
 def paper_wheel(**changes: float) -> Parameters:
     """The wheel of (27)-(31) without friction, with the named constants changed."""
-    return Parameters(**{"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g": 9.81} | changes)
+    return Parameters(**{"m": 20, "r_0": 0.3, "r": 0.05, "J_x": 0.9, "J_y": 0.9, "J_z": 1.8, "g_n": 9.81} | changes)
 
 
 def scene(

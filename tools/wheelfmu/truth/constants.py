@@ -105,6 +105,12 @@ def scene(kind: str, random: np.random.Generator) -> Scene:
             turns = Schedule(((0.0, {"psi_dot_guide": (0.0, *random.uniform(-2, 2, 2))}), (0.4, {"M_3": 5.0})))
             start = rolling(random, psi_dot_start=0.0, theta_dot_start=0.0) | {"guided": True}
             return Scene(start, 0.6, turns)
+        case "jumps":  # the rates of a carrier on a slip, with and without a law
+            slide = random_slide(random)
+            start = dict(slide.start) | {"guided": True, "psi_dot_start": 0.0, "theta_dot_start": 0.0}
+            start |= law(random, -7) if random.random() < 0.5 else {}
+            rates = [{f"{angle}_dot_guide": random.uniform(-1, 1) for angle in ("psi", "theta")} for _ in range(2)]
+            return Scene(start, 0.6, Schedule(((0.0, rates[0]), (0.02, rates[1]), (0.4, {"M_3": 5.0}))))
         case "lifts off":
             fast = {"psi_dot_start": random.normal(0, 6), "theta_dot_start": random.normal(0, 5)}
             return Scene(rolling(random, **fast) | {"keep_contact": False}, 0.6)
@@ -113,7 +119,7 @@ def scene(kind: str, random: np.random.Generator) -> Scene:
 
 
 ROLLS = ("free", "rolls", "passes zero", "passes a law", "carried", "lifts off", "adams", "bdf")
-SCENES = (*ROLLS, "slides", "slides under a law")
+SCENES = (*ROLLS, "slides", "slides under a law", "jumps")
 
 
 def scenes() -> Iterator[tuple[str, int, Scene]]:
@@ -238,26 +244,34 @@ def page(chosen: Sequence[Constant], table: pd.DataFrame) -> str:
 
 PAGE_TEXT = """# Constants of the solver
 
-Numbers of the solver, the unfolded motion and the run that were chosen, not derived. Each stands in `fmu-src` as a
-`CONSTANT` with its unit and its reason, from which `./scripts/constants` makes this table. It also measures the
-consequence of half and double, before each release: a build in which the environment changes one constant runs
-{count} random scenes ({kinds}), at tolerances of 1e-5 and 1e-8.
+The equations, the solver, the unfolded motion and the run contain numbers that were chosen, not derived. Each is a
+`CONSTANT` in `fmu-src` with its unit and its reason. How much do the results depend on these choices? Before each
+release `./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds}) at
+tolerances of 1e-5 and 1e-8, and writes this table.
 
-- *error*: the largest distance from a run at a tolerance of 1e-12, over the tolerance and over the growth of a small
-  change of the start. It stays below {error:g}.
-- *work*: the evaluations of rates and watched functions over those of the constant as it is. It stays below {work:g}.
+- *error* is the largest distance from a run at a tolerance of 1e-12, divided by the tolerance and by the growth of a
+  small change of the start. It stays below {error:g}.
+- *work* is the number of evaluations of rates and watched functions, divided by that of the unchanged constant. It
+  stays below {work:g}.
 
-In brackets: the kind of scenes in which it grows most. A dash: nothing grows by more than 1 %.
+The kind of scenes in which a measure grows most is in brackets. A dash means that nothing grows by more than 1 %.
 
 | file and name | value | unit | reason | half | double |
 |:--|:--|:--|:--|:--|:--|
 {rows}
 
-These lead beyond a limit:
+These changes exceed a limit:
 
 {edges}
 
-The scenes do not judge the constants of model exchange (`exchange`), of difference quotients (`slopes`), of messages
-(`logbook`) and of the most work of a call (`motion`): their tests are in `tests/exchange`, `tests/contract` and
+The scenes do not cover the constants of model exchange (`exchange`), of difference quotients (`slopes`), of messages
+(`logbook`) and of the most work of a call (`motion`). These are tested in `tests/exchange`, `tests/contract` and
 `tests/robustness`.
+
+These numbers are not in the table:
+
+- coefficients of the methods, and the published bounds within which a step grows or shrinks
+- multiples of the rounding of a number, and the limits of a caller's values
+- in the equations in C, which read no environment, `WHEEL_LEAST_ROOM` and the parts of a circle in which
+  `wheel_slip_direction` looks for a slip, which `tests/equations/test_rare_geometry.py` tests
 """

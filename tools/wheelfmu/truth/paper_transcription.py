@@ -152,7 +152,7 @@ class Paper:
 
     def F(self, load: np.ndarray | None = None) -> np.ndarray:  # (15), generalised
         w = self.wheel
-        weight = column(w["m"] * w["g_X"], w["m"] * w["g_Y"], -w["m"] * w["g"])
+        weight = column(w["m"] * w["g_X"], w["m"] * w["g_Y"], -w["m"] * w["g_n"])
         if load is None:
             return np.concatenate([weight, np.zeros_like(weight)], axis=-1)
         moment = times(transposed(self.phi_matrix), load["M"])  # carrier to body axes
@@ -244,7 +244,7 @@ class Paper:
     def energy(self) -> np.ndarray:
         v, w = self.q_dot[..., :3], self.wheel
         turning = (self.omega * times(self.J, self.omega)).sum(-1)
-        fallen = w["g_X"] * self.place[0] + w["g_Y"] * self.place[1] - w["g"] * self.place[2]
+        fallen = w["g_X"] * self.place[0] + w["g_Y"] * self.place[1] - w["g_n"] * self.place[2]
         return 0.5 * (w["m"] * (v * v).sum(-1) + turning) - w["m"] * fallen
 
 
@@ -283,7 +283,7 @@ class Stabilised(Paper):
     def decay_rate(self) -> np.ndarray:
         """a = 5 sqrt(g / (r_0 + r) + |omega|^2), 1/s: never the stiffest part of the motion."""
         w = self.wheel
-        return 5 * np.sqrt(w["g"] / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
+        return 5 * np.sqrt(w["g_n"] / (w["r_0"] + w["r"]) + (self.omega**2).sum(axis=-1))
 
     def system(self, kappa: np.ndarray | float, load: np.ndarray | None = None) -> tuple:
         K, right = super().system(kappa, load)

@@ -36,7 +36,7 @@ def random_wheels(random: np.random.Generator, rows: int, symmetric: bool) -> Ta
     c = np.where(random.random(rows) < 0.2, 0, c)  # the limit J_z = J_x + J_y
     a = b if symmetric else a
     wheel["J_x"], wheel["J_y"], wheel["J_z"] = b + c, a + c, a + b
-    wheel["g"] = random.uniform(0, 20, rows)
+    wheel["g_n"] = random.uniform(0, 20, rows)
     sloping = random.random(rows) < 0.5
     for axis in ("g_X", "g_Y"):
         wheel[axis] = np.where(sloping, random.normal(0, 5, rows), 0)
@@ -111,7 +111,8 @@ class Given(NamedTuple):
 
 def given(scene: Table, motion: Table) -> Given:
     constants, friction, load = scene["wheel"], scene["friction"], scene["load"]
-    wheel = Wheel(**{name: float(constants[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "g", "s")})
+    sizes = {name: float(constants[name]) for name in ("m", "r_0", "r", "J_x", "J_y", "J_z", "s")}
+    wheel = Wheel(**sizes, g=float(constants["g_n"]))
     angles = tuple(float(motion[name]) for name in ("psi", "theta", "phi"))
     rates = tuple(float(motion[name]) for name in ("psi_dot", "theta_dot", "phi_dot"))
     soft = np.tanh((rates[2] + rates[0] * np.cos(angles[1])) / friction["omega_s"])

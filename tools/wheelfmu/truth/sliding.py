@@ -27,8 +27,8 @@ SLIDES = {
     "paper's wheel": Scene(ROAD, 2.5),
     "slippery": Scene({"mu_max": 0.3, "mu_slide": 0.25}, 1.5),
     "equal coefficients": Scene(EQUAL, 1.0),
-    "rolling friction": Scene({**ROAD, "s": 0.03}, 2.0),
-    "general inertia, rolling friction": Scene({**GENERAL, "s": 0.03, "mu_max": 0.35, "mu_slide": 0.3}, 1.4),
+    "rolling resistance": Scene({**ROAD, "s": 0.03}, 2.0),
+    "general inertia, rolling resistance": Scene({**GENERAL, "s": 0.03, "mu_max": 0.35, "mu_slide": 0.3}, 1.4),
     "thrown": Scene({**ROAD, **THROWN, "s": 0.01}, 2.0),
     "thrown, equal coefficients": Scene({**EQUAL, **THROWN, **GENERAL}, 2.0),
     "thin disc": Scene({**ROAD, **THROWN, "r": 0.0}, 2.0),
@@ -51,7 +51,7 @@ SLIDES = {
 
 
 def random_slide(random: np.random.Generator) -> Scene:
-    """0.6 s of any wheel on any road: thrown or not, loaded or not, with and without rolling friction and a brake."""
+    """0.6 s of any wheel on any road: thrown or not, loaded or not, with and without rolling resistance and a brake."""
     a, b, c = random.uniform(0.2, 0.9, 3)
     a = b if random.random() < 0.3 else a
     mu_max = random.uniform(0.1, 0.8)

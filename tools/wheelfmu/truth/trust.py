@@ -82,7 +82,7 @@ class Wheel(Library):
         motion = self.motion(given, times, TIGHTEST)
         solver = "CVODE's Adams" if given["method"] == ADAMS else "DOP853"
         shared = "; slides and boundary layers are solved by the same solver" if motion.collocated else ""
-        return motion._replace(solver=f"by {solver}{shared}")
+        return motion._replace(solver=f"estimated with {solver}{shared}")
 
     def timed(self, start: dict[str, str], times: Array, tolerance: float, repeats: int = 1) -> tuple[float, float]:
         """Least processor times of a run's calls of fmi2DoStep, and of as many empty calls, which are Python's."""
@@ -129,7 +129,7 @@ class Trust(NamedTuple):
             shifted = f"shifted by up to {self.shift:.1e} s" if self.shift else "not shifted"
             located = f"; {' and '.join(found)}, {shifted}"
         unstable = "unstable or chaotic: " * (self.until is not None)
-        return f"{label}: {unstable}{self.short} {self.judge}{located}; computing time {1e3 * self.seconds:.3g} ms."
+        return f"{label}: {unstable}{self.short}, {self.judge}{located}; computing time {1e3 * self.seconds:.3g} ms."
 
 
 def trust(run: Motion, truth: Motion, scales: Array | float = 1.0) -> Trust:

@@ -1,5 +1,5 @@
 """Measures on the built wheel.fmu what its outputs depend on: initially on parameters and inputs, at an instant on
-inputs and continuous states, by model exchange, and on inputs by co-simulation, where alone a wheel carrier turns.
+inputs and continuous states, in model exchange, and on inputs in co-simulation, where alone a wheel carrier turns.
 
 No paper equation. One known is changed at a time and all unknowns are read again, in wheels off every symmetry, so that
 no dependency hides behind a zero: each real start value of zero is set to 0.1, unless the wheel then does not start, as

@@ -37,7 +37,7 @@ def momenta(wheel: Wheel, run: Solution) -> tuple[Array, Array]:
 
 
 def loads(wheel: Wheel, run: Solution, inputs: Inputs) -> tuple[Array, Array]:
-    """Total force, and total moment about O, of ground, weight, inputs and rolling friction."""
+    """Total force, and total moment about O, of ground, weight, inputs and rolling resistance."""
     e1, e2, e3 = carrier_axes(run["psi"], run["theta"])
     ground = np.stack([run["lambda_1"], run["lambda_2"], run["lambda_3"]], axis=1)
     F = np.array([inputs.force(t) for t in run.t])

@@ -98,8 +98,8 @@ class Options:
     """How solve() treats contact and time.
 
     keep_contact False: N = 0 ends the run (lift-off).  flat: the sine of theta at which the wheel counts as flat and
-    the run ends; None: not watched.  omega_s > 0: the regularized law of rolling friction, of this width.
-    pulled: rolling friction on a ground that pulls, as a part of s |N|.  None is a choice: the paper's -s N sign(w_z)
+    the run ends; None: not watched.  omega_s > 0: the regularized law of rolling resistance, of this width.
+    pulled: rolling resistance on a ground that pulls, as a part of s |N|.  None is a choice: the paper's -s N sign(w_z)
     would then drive the wheel and its zero would repel.
     """
 

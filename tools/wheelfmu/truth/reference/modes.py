@@ -57,7 +57,7 @@ class Contacts:
     # ---- laws ----
 
     def s(self, ground: int) -> float:
-        """The lever of N in the law of rolling friction; N < 0 where the ground pulls."""
+        """The lever of N in the law of rolling resistance; N < 0 where the ground pulls."""
         return self.wheel.s if ground > 0 else -self.options.pulled * self.wheel.s
 
     def watched(self, ground: int) -> bool:

@@ -2,7 +2,7 @@
 
 State, 21 floats: unit quaternion (w, x, y, z) of the body; angular velocity w in body axes;
 position and velocity of O in fixed axes; then quadratures: psi and phi (they only choose the
-turn of the angles read from the attitude), work of the inputs, of rolling friction, of sliding
+turn of the angles read from the attitude), work of the inputs, of rolling resistance, of sliding
 friction; the slip u; the time. While friction acts against the slip it is |u| and its direction
 from X about Z: near |u| = 0 the direction is what stays finite. Without friction it is u_X and
 u_Y, which pass zero smoothly. The velocity of O is integrated for itself, so v_O - w x p - u
@@ -37,7 +37,7 @@ class Accelerations:
     lambda_1: float
     lambda_2: float
     lambda_3: float
-    tau: float  # moment of rolling friction and brake about the axle, N.m
+    tau: float  # moment of rolling resistance and brake about the axle, N.m
 
 
 def angle_rates(n: Vector, w: Vector) -> Vector:

@@ -9,7 +9,7 @@ Unknowns: a (acceleration of O), alpha (angular acceleration), lambda (ground on
     J alpha + p x lambda             = M - w x J w + tau k   Euler about O; lambda acts at -p
     a + p x alpha                    = w x dp/dt             v_O = w x p, differentiated
 
-The axle moment tau of rolling friction is left open: the system is solved for tau = 0 and for
+The axle moment tau of rolling resistance is left open: the system is solved for tau = 0 and for
 the response to a unit tau, and a friction law then fixes tau by a scalar linear equation.
 """
 
