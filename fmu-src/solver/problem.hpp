@@ -59,10 +59,10 @@ struct Problem {
   int (*extremes)(void* owner, double t_lo, double t_hi, double* instants);
   double near;          // quick margins below this are near zero
   double longest_step;  // s, > 0: at an unstable rest the error estimate is zero, and steps would grow without limit
-  // For collocation alone.
-  std::optional<Settling> steep, turning;  // without a speed; with one
-  double first_step = INFINITY;            // s, > 0: limit of the first step, since no point is at the start
-  double share = 1;                        // of the error that a step may otherwise make
+  std::optional<Settling> steep;    // without a speed: DOP853 passes it by short steps, collocation solves it
+  std::optional<Settling> turning;  // with one; for collocation alone, as first_step
+  double first_step = INFINITY;     // s, > 0: limit of the first step, since no point is at the start
+  double share = 1;                 // of the error that a step may otherwise make
 
   // At most max_watched of them.
   void watch(const Watched& function) { watched[watched_count++] = function; }

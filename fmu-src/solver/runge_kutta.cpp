@@ -23,6 +23,10 @@ CONSTANT(double, share_of_tolerance, 0.03, "1",
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
 CONSTANT(double, reserve, 0.1, "of the size", "a step is shorter than fits its error, so that few are refused");
 CONSTANT(double, stretch, 0.01, "of the step", "by which it grows to end at the stop: no tiny step, 8 % more error");
+CONSTANT(double, widths_per_step, 1.2, "widths", "in a step through the bend: less than to its poles at pi / 2");
+CONSTANT(double, bend, 5, "widths", "from zero to where the bend ends: 1 - tanh(5) is 1e-4");
+CONSTANT(double, still, 0.1, "widths", "by which a steep state that rests moves in a step");
+CONSTANT(double, far_longer, 3, "steps", "that fit into the step the motion allows, where collocation takes over");
 CONSTANT(double, least_error, 1e-6, "1", "smaller errors, as after a step cut short, are mostly rounding");
 
 // The stages that enter a row of the table.
@@ -140,16 +144,38 @@ struct RungeKutta::Work {
     problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
     double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
-    return accept_step(stop, &liked);
+    return problem.steep ? step_through_bend(stop, &liked) : accept_step(stop, problem.longest_step, &liked);
+  }
+
+  // (decay of the steep state at zero, 1/s) => longest step through its bend, s. The law bends as tanh, whose poles at
+  // i pi / 2 widths end the series of the motion: the error estimate is blind to them.
+  double longest_in_bend(double decay) const {
+    const Settling& steep = *problem.steep;
+    const double away = std::fmax(0, std::fabs(step.y_start[steep.state]) - bend * steep.width);
+    const double speed = std::fabs(engine.f_[0][steep.state]) + decay * steep.width;
+    return (widths_per_step * steep.width + away) / speed;
+  }
+
+  // Through the bend of the steep state no step is too long for the estimate of its error.
+  const char* step_through_bend(double stop, double* liked) {
+    const Settling& steep = *problem.steep;
+    const double zero = 0;
+    double slope = 0, others[max_states] = {};
+    steep.slopes(problem.owner, step.start, step.y_start, {&zero, 1}, &slope, others);
+    const double longest = longest_in_bend(-slope);
+    const char* failure = accept_step(stop, std::fmin(longest, problem.longest_step), liked);
+    const double change = std::fabs(step.y_end[steep.state] - step.y_start[steep.state]);
+    engine.rests_ = !failure && h >= longest && change < still * steep.width &&
+                    std::fmin(*liked, problem.longest_step) > far_longer * h;
+    return failure;
   }
 
   // Tries smaller and smaller steps until
   //   the error is at most one, and f is finite at the end: the step is accepted;
   //   the step is lost in the rounding of time, or most_attempts are made.
-  const char* accept_step(double stop, double* liked) {
-    const double limit = engine.limit_,
-                 longest = limit > 0 ? std::fmin(limit, problem.longest_step) : problem.longest_step;
-    const double t = step.start;
+  const char* accept_step(double stop, double longest, double* liked) {
+    const double limit = engine.limit_, t = step.start;
+    if (limit > 0) longest = std::fmin(limit, longest);
     h = std::fmin(*liked, longest);
     bool rejected = false;
     for (int attempts = 0; attempts < most_attempts; ++attempts) {
@@ -218,6 +244,7 @@ auto RungeKutta::with_work(const Problem& problem, Counters* counters, Step* ste
 
 bool RungeKutta::start(const Problem&) {
   limit_ = 0;
+  rests_ = false;
   has_end_ = false;
   last_error_ = 0;
   return true;
@@ -239,6 +266,7 @@ void RungeKutta::visit(support::Archive& archive, const Problem& problem, const 
   archive.range(size_, 0, archive.greatest);
   archive.range(last_error_, 0, 1);
   archive.number(end_margin_);
+  archive.count(rests_, 0, 1);
   archive.count(has_end_, 0, 1);
   const int known = step.end == step.start ? 0 : has_end_ ? 13 : 12;  // stages; the others follow
   for (int k = 0; k < known; ++k) archive.numbers(f_[k], problem.states);

@@ -21,6 +21,9 @@ class RungeKutta final : public Engine {
   // What is kept while another engine steps.
   void visit_size(support::Archive& archive) { archive.range(liked_, 0, archive.greatest); }
 
+  // Whether the steep state hardly moved in the last step, yet its decay, not the motion, limited the step.
+  bool rests() const { return rests_; }
+
   // The first step after the last start is at most dt, s.
   void limit_first_step(double dt) { limit_ = dt; }
 
@@ -35,6 +38,7 @@ class RungeKutta final : public Engine {
   double size_ = 0;                            // of the last step, s
   double last_error_ = 0;                      // of the last step, in units of the weights; 0: there was none
   double end_margin_ = 0;                      // least margin at the end of the last step
+  bool rests_ = false;                         // see rests()
   bool has_end_ = false;                       // stage 12, at the end of the last step, is known
   alignas(16) double f_[16][max_states] = {};  // rates at the stages of the last step
 };

@@ -24,6 +24,8 @@ double first_stop_after(const Step& step, double t) {
 
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
+  problem_ = {};
+  method_ = method;
   runge_kutta_ = {};
   collocation_ = {};
   step_ = {};  // nothing that is saved is left of an earlier solution
@@ -36,8 +38,9 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
   const bool at_event = pending_ == Outcome::event && t == known_until_;
   first_stop_ = at_event ? first_stop_after(step_, t) : never;
+  const bool rests_on = method_ == Method::collocation && !problem_.turning && problem.steep;
   problem_ = problem;
-  method_ = method;
+  if (!rests_on) method_ = method;
   known_until_ = t;
   fallen_ = 0;
   ++counters_.restarts;
@@ -78,6 +81,10 @@ bool Solver::make_step(double stop) {
   if (stop > known_until_ && reaches(stop)) {
     step_.set_point(stop, step_.y_end, problem_.states);
     return engine().start(problem_);
+  }
+  if (method_ == Method::runge_kutta && runge_kutta_.rests()) {
+    method_ = Method::collocation;
+    if (!engine().start(problem_)) return false;
   }
   step_.start = step_.end;
   std::copy_n(step_.y_end, max_states, step_.y_start);
@@ -151,6 +158,7 @@ void Solver::read(double t, double* y) const {
 // Fields are written only when they are read; a solver that is saved stays as it is, but for counts above the largest
 // that is saved, at which they stay.
 void Solver::visit(support::Archive& archive) {
+  archive.count(method_, 0, static_cast<int>(std::size(engines_)) - 1);
   step_.visit(archive, problem_.states);
   archive.range(known_until_, step_.start, step_.end);
   archive.range(first_stop_, known_until_, never);
@@ -162,9 +170,8 @@ void Solver::visit(support::Archive& archive) {
   if (archive.fits()) engine().visit(archive, problem_, step_);
 }
 
-bool Solver::restore_history(const Problem& problem, Method method, support::Archive& archive) {
+bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
   problem_ = problem;
-  method_ = method;
   step_ = {};
   runge_kutta_ = {};
   visit(archive);

@@ -26,7 +26,8 @@ class Solver {
 
   // Starts, or starts anew, from y at time t (s); history is dropped. The first start sets the counters to zero, later
   // ones go on counting (`restarts` counts all but the first). Runge-Kutta keeps the step size that it wanted last.
-  // False where SUNDIALS could not be set up: failure().
+  // Where a steep state rests, collocation takes over from it, until a start without one. False where SUNDIALS could
+  // not be set up: failure().
   [[nodiscard]] bool start(const Problem& problem, Method method, double t, const double* y);
   [[nodiscard]] bool restart(const Problem& problem, Method method, double t, const double* y);
 
@@ -68,7 +69,7 @@ class Solver {
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
   // the last part of an archive; false where a number is out of its bounds (no solution then until start).
   void save_history(support::Archive& archive) { visit(archive); }
-  [[nodiscard]] bool restore_history(const Problem& problem, Method method, support::Archive& archive);
+  [[nodiscard]] bool restore_history(const Problem& problem, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }

@@ -142,7 +142,8 @@ Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
-  if (now.slides() || now.scene.friction.kind == WHEEL_REGULARIZED) return solver::Method::collocation;
+  const bool cvode = setup.method == adams_method || setup.method == bdf_method;
+  if (now.slides() || (cvode && now.scene.friction.kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

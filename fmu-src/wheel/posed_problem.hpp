@@ -11,8 +11,8 @@ namespace wheel {
 solver::Problem problem_of(Wheel& wheel);
 // (event, t, y) => what follows for the motion alone: what is in force is changed, nothing is counted or logged.
 solver::Consequence follow_on_orbit(void* wheel, int event, double t, double* y);
-// (what is in force) => engine of a motion that is not unfolded: collocation where the direction of a slip or omega_z
-// settles at once.
+// (what is in force) => engine of a motion that is not unfolded: collocation where the direction of a slip settles at
+// once, and instead of CVODE in the layer of a regularized law, which would restart at order 1.
 solver::Method method_of(const Setup& setup, const InForce& in_force);
 
 }  // namespace wheel

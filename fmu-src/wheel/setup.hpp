@@ -76,9 +76,8 @@ struct Setup {
   double slip_scale;                // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[max_states];   // error of each state that counts as one while the wheel spins slowly
 
-  // A regularized law bends within a few widths, and DOP853 is blind to that: tanh has poles at i pi/2 widths. Inside
-  // the layer collocation solves it. Outside, the law is the exact one to the last digit. Another solver gets the whole
-  // law.
+  // A regularized law bends within a few widths, and is steep there: only inside its layer do the solvers meet it.
+  // Outside, the law is the exact one to the last digit. Another solver gets the whole law.
   bool has_layer() const { return friction_law == regularized_law && !exchanged; }
   bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
 };

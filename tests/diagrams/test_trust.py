@@ -18,7 +18,7 @@ from wheelfmu.truth import sliding
 from wheelfmu.truth.errors import by_instant
 from wheelfmu.truth.measure import transitions
 from wheelfmu.truth.scenes import SCENES, Scene
-from wheelfmu.truth.trust import DEFAULT, ROUNDING, Motion, Wheel, trust
+from wheelfmu.truth.trust import DEFAULT, ROUNDING, TIGHTEST, Motion, Wheel, trust
 
 WORDS = {"regularized": "2", "True": "true", "False": "false", "multibody": "3", "adams": "2", "bdf": "3"}
 NAMES = (
@@ -87,7 +87,7 @@ def test_another_solver_judges_and_where_it_is_the_same_solver_the_line_says_so(
     times = np.linspace(0, 2, 21)
     said = trust(wheel.motion(start, times, DEFAULT), wheel.judge(start, times)).said("A")
     assert f" of the range, estimated with {solver}" in said
-    assert ("; slides and boundary layers are solved by the same solver" in said) == shared
+    assert ("; slides and rests in a boundary layer are solved by the same solver" in said) == shared
 
 
 def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel: Wheel) -> None:
@@ -99,7 +99,9 @@ def test_the_estimated_error_of_a_guided_wheel_is_that_of_the_closed_form(wheel:
     run, truth = wheel.motion(given, times, 1e-5), wheel.judge(given, times)
     estimated, true = (np.abs(run.rows[:, 2] - spin).max() for spin in (truth.rows[:, 2], exact))
     beyond(true, ROUNDING * np.ptp(exact), "true error, rad/s")
-    within(relative_error(estimated, true), 1e-6, "estimated error, relative")
+    off = abs(estimated - true) / np.ptp(exact)
+    within(off / TIGHTEST, 10, "estimated error off the true one, in tolerances of the judge")
+    beyond(true / np.ptp(exact) / TIGHTEST, 10, "true error, in these tolerances")
 
 
 def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:

@@ -109,6 +109,23 @@ def test_a_state_outside_its_steep_law_comes_to_its_limit_in_few_steps(collocati
     within(one.now.steps, 150, "number of steps")
 
 
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_from_a_rest_in_a_steep_law_on_collocation_takes_over_from_dop853(solver, tolerance):
+    """Also in a copy from bytes. The decay, 4.5 / width, would allow DOP853 no more than steps of 2e-5."""
+    one = solver("runge_kutta", "steep", tolerance=tolerance, longest_step=0.5)
+    one.restart(0.0, [0.0, 12 * WIDTH, 1.0, 0.0])
+    one.step()
+    within(one.now.known, 10 * WIDTH, "first step, as far as the bend")
+    while one.now.known < 1e-3:
+        assert one.step() == STEPPED, one.failure
+        other = one.copied()
+        assert one.step() == other.step() == STEPPED
+        assert one.now == other.now
+    assert one.run(0.5, 1000) == STEPPED, one.failure
+    within(abs(one.read(0.5)[1] / WIDTH - np.sin(0.5)), 10 * tolerance, "off the limit, in widths")
+    within(one.now.steps, 150, "number of steps")
+
+
 def test_however_close_to_nothing_the_speed_falls_steps_go_on(collocation):
     """At the tightest tolerance, to within some hundred roundings of the instant at which it vanishes."""
     one = collocation("falling", tolerance=1e-13, longest_step=0.5)

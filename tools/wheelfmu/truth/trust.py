@@ -1,10 +1,10 @@
 """How far a run can be trusted: by the same motion from another solver of wheel.fmu, at its tightest tolerance.
 
-CVODE's Adams judges; a run by CVODE is judged by DOP853. Slides and stiff layers are the collocation's under every
-method, which alone counts Jacobians: there the line says that the solver is the same. The error is the largest
-difference of the four headline outputs over the run, relative to each output's range. Transitions and an early end are
-compared by their logged instants. Where both runs part, as near an upright start, the instant is given up to which
-their first three digits agree.
+CVODE's Adams judges; a run by CVODE is judged by DOP853. Slides, and rests in the layer of a law, are the
+collocation's under every method, which alone counts Jacobians: there the line says that the solver is the same. The
+error is the largest difference of the four headline outputs over the run, relative to each output's range.
+Transitions and an early end are compared by their logged instants. Where both runs part, as near an upright start,
+the instant is given up to which their first three digits agree.
 """
 
 import re
@@ -81,7 +81,7 @@ class Wheel(Library):
         given = judging(start)
         motion = self.motion(given, times, TIGHTEST)
         solver = "CVODE's Adams" if given["method"] == ADAMS else "DOP853"
-        shared = "; slides and boundary layers are solved by the same solver" if motion.collocated else ""
+        shared = "; slides and rests in a boundary layer are solved by the same solver" if motion.collocated else ""
         return motion._replace(solver=f"estimated with {solver}{shared}")
 
     def timed(self, start: dict[str, str], times: Array, tolerance: float, repeats: int = 1) -> tuple[float, float]:
