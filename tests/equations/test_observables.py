@@ -74,21 +74,6 @@ def test_the_contact_is_the_lowest_point_of_the_torus() -> None:
     beyond(np.abs(contacts(scenes, k)[:, :2] - place[:, :2]).max(), 1e-10, "contact point of another tilt, m")
 
 
-def test_the_velocity_of_the_contact_is_the_slope_of_its_place() -> None:
-    scenes, k, _ = rolling()
-    h = 1e-5
-    ahead, behind = k.copy(), k.copy()
-    for name in ("X_O", "Y_O", "psi", "theta"):
-        ahead[name] += h * k[name + "_dot"]
-        behind[name] -= h * k[name + "_dot"]
-    slope = (contacts(scenes, ahead) - contacts(scenes, behind))[:, :2] / (2 * h)
-    found = contacts(scenes, k)[:, 2:]
-    speed = np.abs(found).max()
-    within(np.abs(found - slope).max() / speed, 1e-8, "velocity of the contact, relative")
-    k["theta_dot"] *= 1.001
-    beyond(np.abs(contacts(scenes, k)[:, 2:] - slope).max() / speed, 5e-5, "velocity at another rate, relative")
-
-
 def test_the_force_in_wheel_axes_is_lambda_along_e1_and_to_its_left() -> None:
     _, k, d = rolling()
     e1 = np.column_stack([np.cos(k["psi"]), np.sin(k["psi"]), np.zeros(ROWS)])

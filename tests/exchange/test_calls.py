@@ -102,6 +102,8 @@ def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: 
         assert wheel.get("theta", "psi_dot", "omega_z", "friction_mode") == [1.2, 0.4, 0.5, 1]
         assert wheel.set(phi_dot=1.0) == ERROR
         assert wheel.set(m=21.0) == ERROR
+    with loaded(library).new().initializing() as wheel:  # there a state follows from the parameters
+        assert wheel.set(theta=1.2) == ERROR
 
 
 def test_a_spin_set_across_an_event_is_kept_and_the_law_follows_it(library: Library) -> None:
@@ -451,5 +453,6 @@ def test_each_question_of_a_solver_is_counted_when_it_is_asked(library: Library)
 def test_a_brake_that_is_not_in_use_has_no_moment_until_an_event_gives_it_a_law(library: Library) -> None:
     with exchange(library) as wheel:
         assert not wheel.jacobian(["tau", "tau_brake", "omega_z_dot"], ["M_brake"]).any()
-        wheel.put(M_brake=1.0).event()
+        assert not wheel.wants_event() and wheel.put(M_brake=1.0).wants_event()
+        wheel.event()
         assert wheel.jacobian(["tau_brake"], ["M_brake"]) == pytest.approx(1)  # omega_z < 0

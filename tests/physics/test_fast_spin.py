@@ -17,7 +17,7 @@ BOUND = 100  # tolerances of the range
 KINDS = [(1, 1), (2, 2), (2, 3), (2, 4), (3, 1), (3, 2), (3, 3), (3, 4)]
 
 
-@pytest.mark.parametrize("spin", [10.0, 100.0, 300.0, 1000.0])
+@pytest.mark.parametrize("spin", [100.0, 1000.0])
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_error_of_a_second_stays_below_a_hundred_tolerances_of_the_range(library: Library, scene: str, spin: float):
     start, inputs = SCENES[scene]

@@ -1,11 +1,9 @@
 """A ground that pulls, with rolling resistance: at N = 0 the law has a corner, and each such instant is an event.
 
 Violent starts: two to eight times the rates of the paper's wheel, keep_contact, exact law. Judged by the reference,
-which ends each mode at N = 0 too, and by the unit's own tightest run; errors relative to the range of each headline
-output, over the factor by which the motion makes errors grow. Regularized law: closed forms of a guided wheel.
+which ends each mode at N = 0 too; errors relative to the range of each headline output. Regularized law: closed forms
+of a guided wheel.
 """
-
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -43,20 +41,6 @@ def distance(one: Run, other: Run) -> float:
 
 def pulled(run: Run) -> bool:
     return bool((run["lambda_3"] < 0).any())
-
-
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-11])
-def test_a_ground_that_pulls_costs_no_accuracy(library: Library, tolerance: float) -> None:
-    worst, pulling = 0.0, 0
-    for seed in range(60):
-        start = violent(seed)
-        exact = motion(library, start, 1e-13)
-        growth = max(1.0, distance(motion(library, replace(start, theta=start.theta + 1e-9), 1e-13), exact) / 1e-9)
-        run = motion(library, start, tolerance)
-        pulling += pulled(run)
-        worst = max(worst, distance(run, exact) / tolerance / growth)
-    assert pulling > 20
-    within(worst, 5, "error / range over tolerance and growth")  # of the first 1,000 seeds the largest is below 1
 
 
 @pytest.mark.parametrize("seed", [3, 8, 9, 10])  # in the last three the ground pulls

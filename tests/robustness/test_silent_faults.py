@@ -1,4 +1,5 @@
-"""Small faults that would be silent: one test for each, found by faults that were put in by hand and not noticed."""
+"""What no error and no wrong motion shows at once: pulls of the ground in the log, the digits of times and angles,
+small changes of an input, and what a step that fails leaves behind."""
 
 from math import pi
 
@@ -7,7 +8,6 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
-from wheelfmu.truth.closed_forms import rolling_inertia
 from wheelfmu.truth.scenes import PAPER, PULLED
 from wheelfmu.truth.schedule import play
 
@@ -51,16 +51,6 @@ def test_a_run_whose_orbit_is_built_where_the_ground_pulls_has_the_state_of_one_
         assert w.terminate() == w.reset() == OK
     assert len(pulls_of(w)) == 2
     assert states[0] == states[1]
-
-
-@pytest.mark.parametrize("braked", [0.0, 2.0])
-@pytest.mark.parametrize("slope", [5.0, -5.0])
-def test_the_rate_of_tau_counts_the_brake(wheel, braked, slope):
-    """Rolling straight with phi_dot < 0: tau is M_brake; a brake at zero can only be put on."""
-    w = wheel().start(theta_start=pi / 2, phi_dot_start=-2.0).to(0.1).give({"M_brake": (braked, slope)})
-    assert abs(w.get("tau")[0]) == braked
-    expected = 0.0 if braked == 0 and slope < 0 else slope
-    assert abs(w.rates(["tau"])()[0]) == pytest.approx(abs(expected), rel=1e-11, abs=0)
 
 
 # Of a step of 1.3 units in the last place of the time a quarter is lost, of 1.6 a quarter is added, of 7.5 a fifteenth.
@@ -109,14 +99,6 @@ def test_a_small_change_at_a_late_start_time_is_taken(wheel):
     within(abs(ends[0] - ends[1] - 1e-8), 32 * WEIGHT * EPSILON, "change of lambda_3 off that of F_Z, N")
 
 
-def test_a_ground_that_pulls_does_not_hold_the_wheel(wheel):
-    """N = -m g: friction has no capacity, and the smallest moment rolls the wheel."""
-    w, pressed = (wheel().start(theta_start=pi / 2, phi_dot_start=0.0, s=0.03, keep_contact=True) for _ in range(2))
-    (spin,) = w.put(F_Z=2 * WEIGHT, M_3=0.01).to(0.5).get("phi_dot")
-    assert spin == pytest.approx(0.01 * 0.5 / rolling_inertia(PAPER), rel=1e-6)
-    assert pressed.put(M_3=0.01).to(0.5).get("phi_dot") == [0.0]  # the partner
-
-
 # ---- what a master sees of inputs between two steps, and of pulls ----
 
 
@@ -147,15 +129,6 @@ def test_the_first_pull_is_logged_at_its_instant_and_none_that_an_input_prevents
     assert instants_of_pulls(prevented) == []
 
 
-def test_a_ground_that_pulls_from_the_start_is_logged_once_by_the_unfolded_wheel_too(wheel):
-    """A wheel that tips fast is off the ground at once; unfolded (method automatic) or stepped through."""
-    fast = {"theta_start": 1.48, "psi_dot_start": -1.52, "theta_dot_start": -6.5, "phi_dot_start": 4.4}
-    for method, steps in ((1, 20), (1, 1), (2, 1), (4, 1)):  # twice unfolded: whatever the steps
-        w = wheel().start(keep_contact=True, method=method, **fast)
-        assert [w.step(2.0 / steps) for _ in range(steps)] == [OK] * steps
-        assert instants_of_pulls(w) == [0.0]
-
-
 def test_each_of_two_failures_has_its_own_message(wheel):
     """Of two runs of one instance: too many turns, then a force that no step follows."""
     w = wheel()
@@ -171,6 +144,8 @@ def test_a_step_that_fails_counts_nothing_and_the_counts_stay_when_the_run_is_cl
         w = wheel().start(**values).to(1.5)
         counts = w.get(*COUNTERS)
         before = w.serialized()
-        assert w.put(M_3=1e280).step(0.1) == ERROR and w.get(*COUNTERS) == counts
+        answer = w.put(M_3=1e280).get("omega_z_dot", "M_3")
+        assert w.step(0.1) == ERROR and w.get(*COUNTERS) == counts
+        assert w.get("omega_z_dot", "M_3") == answer and answer[0] > 1e270  # what was set still acts
         assert w.back(before).terminate() == OK and w.get(*COUNTERS) == counts
         beyond(wheel().start(**values).put(M_3=1.0).to(0.5).get("n_rhs")[0], 0, "evaluations")

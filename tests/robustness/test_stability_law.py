@@ -35,20 +35,6 @@ def test_no_width_is_quietly_wrong(library: Library, truth: Run, omega_s: float,
     beyond(error_against(truth, lighter), bound, "error of another friction / range")
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_no_method_steps_over_the_layer_of_a_narrow_law(library: Library, method: str) -> None:
-    """At a loose tolerance, over random coefficients: a step across a whole stick changes all that follows."""
-    random, errors, others = np.random.default_rng(2), [], []
-    for _ in range(30):
-        start = {"s": random.uniform(0.02, 0.04), "theta_start": random.uniform(1.23, 1.29)}
-        truth = run(library, start, TIMES, 1e-10)
-        law = {**start, "friction_law": "regularized", "omega_s": 10 ** random.uniform(-9, -7), "method": method}
-        errors.append(error_against(truth, run(library, law, TIMES, 1e-4)))
-        others.append(error_against(truth, run(library, start | {"s": 1.01 * start["s"]}, TIMES, 1e-4)))
-    within(max(errors), law_bound(0, 1e-4), "error of the law / range")
-    beyond(max(others), law_bound(0, 1e-4), "error of a hundredth more friction / range")
-
-
 @pytest.mark.parametrize("x", [3.0, 6.5, 9.0, 12.0])
 @pytest.mark.parametrize("omega_s", [1e-4, 1e-6, 1e-8])
 def test_a_spin_that_a_stiff_law_balances_far_out_in_its_layer_stays_there(wheel, omega_s: float, x: float) -> None:
@@ -238,26 +224,6 @@ def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library
     beyond(max(others), bound, "error of a wide law / range")
 
 
-def test_a_slide_does_not_step_over_the_layer_of_a_law_that_is_hardly_stiff(library: Library) -> None:
-    start = {"friction_law": "regularized", "omega_s": 3.4437e-4, "s": 0.01, "keep_contact": True}
-    start |= {"mu_max": 0.32670876, "mu_slide": 0.32108712, "theta_start": 1.42636813, "psi_dot_start": 0.11561844}
-    start |= {"phi_dot_start": -0.01491872, "slip_x_start": 2.31003507, "slip_y_start": 0.86868436}
-    headings = [run(library, start, [0.0, 1.0], tolerance)["psi"][-1] for tolerance in (1e-6, 1e-8, 1e-10, 1e-12)]
-    within(absolute_error(headings[:3], headings[3]), 1e-5, "heading at other tolerances, rad")
-    wider = run(library, start | {"omega_s": 2 * start["omega_s"]}, [0.0, 1.0], 1e-8)["psi"][-1]
-    beyond(abs(wider - headings[3]), 1e-5, "heading under a law twice as wide, rad")
-
-
-def test_a_spin_that_settles_takes_the_multibody_form_and_the_slip_with_it(wheel) -> None:
-    """The rates of all other states depend on the moment that the spin finds: else the sweeps hardly converge."""
-    law = {"friction_law": "regularized", "omega_s": 1e-7, "keep_contact": True, "psi_dot_start": 0.2, "M_brake": 20.0}
-    slide = {"s": 0.03, "mu_max": 0.34, "mu_slide": 0.24, "theta_start": 0.955, "slip_x_start": 0.0575}
-    for formulation in ("reduced", "multibody"):
-        for tolerance, most in ((1e-4, 20000), (1e-6, 20000), (1e-8, 60000)):
-            w = wheel().start(**law, **slide, formulation=formulation, phi_dot_start=0.276, tolerance=tolerance).to(1.0)
-            within(w.get("n_rhs")[0], most, "evaluations in a second")
-
-
 def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
     def evaluations(omega_s: float, tolerance: float = 1e-8) -> int:
         law = {"friction_law": "regularized", "omega_s": omega_s, "tolerance": tolerance}
@@ -298,22 +264,6 @@ def test_a_coefficient_that_is_tuned_later_costs_no_more_steps(wheel, omega_s, b
     assert min(*first.get("n_jac"), *tuned.get("n_jac")) > 0  # with the first choice kept, 36
 
 
-WITHOUT_WEIGHT = {"g": 0.0, "omega_s": 1e-6}, {"M_brake": 30.0}, 1.0
-PRESSED = {"s": FRICTION["s"], "omega_s": 2e-3}, {"F_Z": -5e4}, 1.0
-UPRIGHT = {"theta_start": np.pi / 2, **PRESSED[0]}, PRESSED[1], 0.1  # sticks soon, and has not fallen yet
-
-
-@pytest.mark.parametrize(
-    ("start", "inputs", "stop"), [WITHOUT_WEIGHT, PRESSED, UPRIGHT], ids=["brake without weight", "pressed", "upright"]
-)
-def test_the_moment_that_acts_decides_and_not_the_weight(wheel, start, inputs, stop):
-    steps = []
-    for method in ("automatic", "bdf"):
-        w = wheel().start(friction_law="regularized", keep_contact=True, method=method, **start).put(**inputs).to(stop)
-        steps.append(w.get("n_steps")[0])
-    within(steps[0] / steps[1], 1.5, "steps over those of BDF where the moment acts")
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid(played, seed):
     rng = np.random.default_rng(seed)
@@ -349,15 +299,6 @@ def test_a_rest_costs_about_the_same_at_every_width(library: Library, rest: str,
     costs = [run(library, {**start, "omega_s": float(w)}, [0, 10], tolerance).counters["n_rhs"] for w in widths]
     ratios = [max(pair) / min(pair) for pair in zip(costs, costs[1:], strict=False)]
     within(max(ratios), 3, "cost over that of a neighbour")
-
-
-def test_a_rest_in_a_soft_law_depends_on_no_communication_point(wheel) -> None:
-    start = {"guided": True, "theta_start": np.pi / 2, "friction_law": 2, "omega_s": 3e-3, **RESTS["torque"]}
-    ends = [wheel().start(**start).to(*np.arange(1, count + 1) * (3 / count)).bits() for count in (1, 30, 3000)]
-    assert len({*ends}) == 1
-    omega_z = np.frombuffer(wheel().start(**start).to(3.0).read(["omega_z"]))[0]
-    capacity = 0.003 * 20 * 9.81 + 20  # tanh(omega_z / omega_s) times it balances the torque
-    within(abs(omega_z - 3e-3 * np.arctanh(7 / capacity)), 1e-12, "spin at rest, rad/s")
 
 
 def test_the_multibody_form_solves_a_narrow_law_as_the_reduced_one_does(library: Library) -> None:

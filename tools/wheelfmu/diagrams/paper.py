@@ -148,7 +148,7 @@ def warnings_of(scenes: Sequence[Scene]) -> list[str]:
     found = ["r > r_0: this torus intersects itself."] * (own["r"] > own["r_0"])
     about = doubt(own)
     found += [FALL_BY_ROUNDING] * any(scene.by_rounding for scene in scenes)
-    return found + [f"{about} Give J_x, J_y and J_z too, or a body that has them, such as body=torus."] * bool(about)
+    return found + [f"{about} Give J_x, J_y and J_z too; docs/recipes.md has formulas."] * bool(about)
 
 
 def is_paper(scenes: Sequence[Scene]) -> bool:
