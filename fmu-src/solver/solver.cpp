@@ -158,7 +158,9 @@ void Solver::read(double t, double* y) const {
 // Fields are written only when they are read; a solver that is saved stays as it is, but for counts above the largest
 // that is saved, at which they stay.
 void Solver::visit(support::Archive& archive) {
-  archive.count(method_, 0, static_cast<int>(std::size(engines_)) - 1);
+  bool rests = method_ == Method::collocation && !problem_.turning && problem_.steep;
+  archive.count(rests, 0, problem_.steep ? 1 : 0);
+  if (rests) method_ = Method::collocation;
   step_.visit(archive, problem_.states);
   archive.range(known_until_, step_.start, step_.end);
   archive.range(first_stop_, known_until_, never);
@@ -170,8 +172,9 @@ void Solver::visit(support::Archive& archive) {
   if (archive.fits()) engine().visit(archive, problem_, step_);
 }
 
-bool Solver::restore_history(const Problem& problem, support::Archive& archive) {
+bool Solver::restore_history(const Problem& problem, Method method, support::Archive& archive) {
   problem_ = problem;
+  method_ = method;
   step_ = {};
   runge_kutta_ = {};
   visit(archive);

@@ -69,7 +69,7 @@ class Solver {
   // Snapshot: the complete history as numbers of 8 bytes; restored, the solution goes on bit-identically. It is
   // the last part of an archive; false where a number is out of its bounds (no solution then until start).
   void save_history(support::Archive& archive) { visit(archive); }
-  [[nodiscard]] bool restore_history(const Problem& problem, support::Archive& archive);
+  [[nodiscard]] bool restore_history(const Problem& problem, Method method, support::Archive& archive);
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }

@@ -122,7 +122,7 @@ const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
   w.setup = setup;
   w.run = run;
   w.orbit.leave();
-  if (!stepping || w.solver.restore_history(problem_of(w), archive)) return nullptr;
+  if (!stepping || w.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive)) return nullptr;
   w.run.phase = Phase::broken;
   return forged;
 }

@@ -39,14 +39,19 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
     found += [("transitions", 1, 0, COUNT), ("counted", 5, 0, COUNT)]
     if phase != STEPPING:
         return found
-    found += [("start", 1, -MOST, MOST), ("end", 1, -MOST, MOST), ("y at both", 2 * states, -MOST, MOST)]
+    found += [
+        ("rests in a law", 1, 0, 0),
+        ("start", 1, -MOST, MOST),
+        ("end", 1, -MOST, MOST),
+        ("y at both", 2 * states, -MOST, MOST),
+    ]
     found += [("lowest margin", 1, -MOST, inf), ("inside at", 1, 0.0, 1.0), ("y inside", states, -MOST, MOST)]
     found += [("known until", 1, -MOST, MOST), ("first stop", 1, -MOST, inf), ("pending", 1, 0, 2)]
     found += [("fallen", 1, 0, watched - 1), ("values", 13, -MOST, MOST), ("counters", 5, 0, COUNT)]
     found += [("size that is liked", 1, 0.0, MOST)]
     if kind == "runge_kutta":
         found += [("limit, size", 2, 0.0, MOST), ("last error", 1, 0.0, 1.0), ("margin", 1, -MOST, MOST)]
-        found += [("end is known", 1, 0, 1), ("rates", stages * states, -MOST, MOST)]
+        found += [("limited by a law", 1, 0, 1), ("end is known", 1, 0, 1), ("rates", stages * states, -MOST, MOST)]
     elif kind == "collocation":
         found += [("sizes", 2, 0.0, MOST), ("known", 1, 0, 1), ("rates", stages * states, -MOST, MOST)]
     else:

@@ -154,5 +154,5 @@ PUBLIC int probe_copy(Probe* from, Probe* to) {
   support::Archive writing = support::Archive::writing(bytes.data());
   from->solver.save_history(writing);
   support::Archive reading = support::Archive::reading(bytes.data(), bytes.size());
-  return to->solver.restore_history(problem_of(to), reading);
+  return to->solver.restore_history(problem_of(to), to->setting.method, reading);
 }
