@@ -158,7 +158,7 @@ struct RungeKutta::Work {
     double slope = 0, others[max_states] = {};
     steep.slopes(problem.owner, step.start, step.y_start, {&zero, 1}, &slope, others);
     const double away = std::fmax(0, std::fabs(step.y_start[steep.state]) - bend * steep.width);
-    const double speed = std::fabs(engine.f_[0][steep.state]) - slope * steep.width;
+    const double speed = std::fabs(engine.f_[0][steep.state]) + std::fabs(slope) * steep.width;
     return (widths_per_step * steep.width + away) / speed;
   }
 

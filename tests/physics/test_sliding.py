@@ -353,7 +353,7 @@ def test_a_slip_that_begins_where_the_ground_pulls_keeps_its_direction(library: 
     fast = {"theta_start": 2.0, "psi_dot_start": -3.0, "theta_dot_start": 14.0, "phi_dot_start": 15.5}
     with library.wheel(logging=True) as wheel:
         wheel.start(keep_contact=True, formulation=formulation, mu_max=1.0, mu_slide=0.36, **fast).to(0.01)
-        assert [text.split(": ")[1].split(";")[0] for text in wheel.texts()] == [
+        assert [text.split(": ")[1].split(", and")[0] for text in wheel.texts()] == [
             "the wheel starts to slide.",
             "the road pulls",
         ]
