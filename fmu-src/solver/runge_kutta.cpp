@@ -144,16 +144,15 @@ struct RungeKutta::Work {
     problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
     double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
-    const double in_bend = problem.steep ? longest_in_bend() : INFINITY;
+    const double in_bend = problem.steep ? longest_in_bend(*problem.steep) : INFINITY;
     const char* failure = accept_step(stop, std::fmin(in_bend, problem.longest_step), &liked);
-    engine.rests_ = problem.steep && !failure && rests_after(in_bend);
+    engine.rests_ = problem.steep && !failure && rests_after(*problem.steep, in_bend);
     return failure;
   }
 
-  // Longest step through the bend of the steep state, s. The law bends as tanh, whose poles at i pi / 2 widths end the
-  // series of the motion: the error estimate is blind to them.
-  [[gnu::noinline]] double longest_in_bend() const {
-    const Settling& steep = *problem.steep;
+  // Longest step through the bend of the steep state, s; its slope at zero is positive where the road pulls. The law
+  // bends as tanh, whose poles at i pi / 2 widths end the series of the motion: the error estimate is blind to them.
+  [[gnu::noinline]] double longest_in_bend(const Settling& steep) const {
     const double zero = 0;
     double slope = 0, others[max_states] = {};
     steep.slopes(problem.owner, step.start, step.y_start, {&zero, 1}, &slope, others);
@@ -163,8 +162,7 @@ struct RungeKutta::Work {
   }
 
   // Whether the steep state rests after a step that `longest` limited.
-  bool rests_after(double longest) const {
-    const Settling& steep = *problem.steep;
+  bool rests_after(const Settling& steep, double longest) const {
     const double change = std::fabs(step.y_end[steep.state] - step.y_start[steep.state]);
     const double wanted = std::fmin(engine.liked_, problem.longest_step);
     return h >= longest && change < still * steep.width && wanted > far_longer * h;
