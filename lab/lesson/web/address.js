@@ -66,6 +66,9 @@ export class Link {
     this.put(text, 'pushState');
   }
 
+  /** The step that has come is in the address at once: the way back is a change of it. */
+  arrive() { this.put(this.write()); }
+
   /** Shows what the address says; a wrong one gives the first step and a sentence. */
   follow() {
     this.text = location.hash.slice(1);

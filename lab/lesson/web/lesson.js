@@ -79,6 +79,7 @@ export class Lesson {
     if (!this.steps[step]) return;
     this.link.leave();
     this.open(step);
+    this.link.arrive();
     if (!this.guess) this.page.player.play();
   }
 
