@@ -25,7 +25,6 @@ double first_stop_after(const Step& step, double t) {
 bool Solver::start(const Problem& problem, Method method, double t, const double* y) {
   pending_ = Outcome::failed;
   problem_ = {};
-  method_ = method;
   runge_kutta_ = {};
   collocation_ = {};
   step_ = {};  // nothing that is saved is left of an earlier solution
@@ -38,7 +37,7 @@ bool Solver::start(const Problem& problem, Method method, double t, const double
 bool Solver::restart(const Problem& problem, Method method, double t, const double* y) {
   const bool at_event = pending_ == Outcome::event && t == known_until_;
   first_stop_ = at_event ? first_stop_after(step_, t) : never;
-  const bool rests_on = method_ == Method::collocation && !problem_.turning && problem.steep;
+  const bool rests_on = rests_in_law() && problem.steep;
   problem_ = problem;
   if (!rests_on) method_ = method;
   known_until_ = t;
@@ -158,7 +157,7 @@ void Solver::read(double t, double* y) const {
 // Fields are written only when they are read; a solver that is saved stays as it is, but for counts above the largest
 // that is saved, at which they stay.
 void Solver::visit(support::Archive& archive) {
-  bool rests = method_ == Method::collocation && !problem_.turning && problem_.steep;
+  bool rests = rests_in_law();
   archive.count(rests, 0, problem_.steep ? 1 : 0);
   if (rests) method_ = Method::collocation;
   step_.visit(archive, problem_.states);

@@ -73,6 +73,8 @@ class Solver {
 
  private:
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
+  // Whether collocation solves a steep state, and not a slide.
+  bool rests_in_law() const { return method_ == Method::collocation && problem_.steep && !problem_.turning; }
   bool make_step(double stop);
   void expand() const;
   void look_for_events(double from);

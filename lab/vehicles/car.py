@@ -19,7 +19,6 @@ BUILT = ROOT / "build" / "examples"
 OF_A_WHEEL = ("X_O", "Y_O", "psi", "theta", "phi", "omega_z", "lambda_1", "lambda_2", "lambda_3", "lambda_y")
 COMPARED = ("X", "Y", "psi", "roll", "pitch", "v", "omega")
 RECORD = {"chassis": COMPARED, "driver": ("delta", "M_drive", "M_brake"), **dict.fromkeys(WHEELS, OF_A_WHEEL)}
-COLUMNS = [f"{of}.{name}" if of in WHEELS else name for of, names in RECORD.items() for name in names]
 LEAST = 0.01  # of a range, where errors are relative to it
 
 
@@ -41,19 +40,20 @@ def drive(
 ) -> Table:
     """A manoeuvre by the package's own step, unless h is given; recorded every `grid`, or every second step."""
     of = system() | {"start": run.start(), "stop": run.stop}
-    rows = recorded(fmus, of | ({"step": h} if h else {}), RECORD, exchange, grid, progress=progress)
-    return dict(zip(("time", *COLUMNS), np.transpose(rows), strict=True))
+    return recorded(fmus, of | ({"step": h} if h else {}), RECORD, exchange, grid, progress=progress)
 
 
 def recorded(
     fmus: Fmus, of: dict[str, Any], record: dict[str, tuple], exchange: str, grid: float, *, progress: bool
-) -> list[list[float]]:
-    """Rows of a system's run: time, and the variables of each component."""
+) -> Table:
+    """A system's run: time, and the variables of each component; those of a wheel of the car with its name before."""
     components = [Component(name, fmus[model], of["start"][name]) for name, model in of["fmus"].items()]
     with loaded(*components):
         master, h = Master(components, of["connections"]), of["step"]
         times = master.steps(of["stop"], h, exchange, max(1, round((grid or 2 * h) / h)), progress)
-        return [[t, *chain.from_iterable(master.read(*one) for one in record.items())] for t in times]
+        rows = [[t, *chain.from_iterable(master.read(*one) for one in record.items())] for t in times]
+    columns = [f"{name}.{one}" if name in WHEELS else one for name, ones in record.items() for one in ones]
+    return dict(zip(("time", *columns), np.transpose(rows), strict=True))
 
 
 def error(table: Table, truth: Table) -> float:

@@ -13,11 +13,10 @@ from wheelfmu.fmu.paths import ROOT
 
 from . import judges
 from .car import BUILT, Table, build_all, drive, recorded
-from .manoeuvres import J_Z, M_WHEEL, MANOEUVRES, WHEELS, G, R, system
+from .manoeuvres import J_Z, M_WHEEL, MANOEUVRES, WHEELS, G, R, presets, system
 from .master import Ended
 
 RESULTS = ROOT / "results" / "examples"
-FIRST = "lane"  # if no manoeuvre is given
 GRID = 0.012  # s, of the table
 STYLES = list(zip((style.BLUE, style.VERMILLION, style.SKY, style.ORANGE), ("-", "--", ":", "-."), strict=True))
 PANELS = {  # label: factor, columns
@@ -29,7 +28,6 @@ PANELS = {  # label: factor, columns
     "lateral force [kN]": (1e-3, [f"{wheel}.lambda_y" for wheel in WHEELS]),
 }
 # Of the quarter car.
-M_BODY = 300.0  # kg, its sprung mass
 RECORD = {"wheel": ("X_O_dot", "omega_z", "lambda_3", "mu_required"), "quarter_car": ("X_B_dot", "Z_B", "F_X", "M_3")}
 PANELS_OF_ONE = {
     "speed [m/s]": (1, ["X_O_dot", "X_B_dot"]),
@@ -41,7 +39,6 @@ PANELS_OF_ONE = {
 
 def draw(title: str, table: Table) -> Figure:
     """Tracks of the car's wheels from above, and the panels over time."""
-    style.use_style()
     fig = figure(f"Car: {title}", 186)
     grid = fig.add_gridspec(4, 2)
     track = fig.add_subplot(grid[0, :])
@@ -55,6 +52,7 @@ def draw(title: str, table: Table) -> Figure:
 
 def figure(title: str, height: float) -> Figure:
     """Height in mm."""
+    style.use_style()
     fig = style.figure_mm(style.PAGE, height)
     fig.set_layout_engine("constrained", h_pad=0.06, wspace=0.06)
     fig.suptitle(title, fontsize=9)
@@ -99,14 +97,12 @@ def drive_car(manoeuvre: str) -> None:
 def launch_quarter_car() -> None:
     """The quarter car's launch from rest by its hub motor: (m + J_z / R^2) a = (M_drive - s m g) / R."""
     of = system("quarter_car")
-    rows = recorded(build_all(), of, RECORD, "derivatives", 0.0, progress=True)
-    table = dict(zip(("time", *(name for names in RECORD.values() for name in names)), np.transpose(rows), strict=True))
-    late, m = table["time"] > of["stop"] - 0.5, M_BODY + M_WHEEL
+    table = recorded(build_all(), of, RECORD, "derivatives", 0.0, progress=True)
+    late, m = table["time"] > of["stop"] - 0.5, presets("quarter_car")["m_B"] + M_WHEEL
     measured = float(np.polyfit(table["time"][late], table["X_B_dot"][late], 1)[0])
     a = (-of["start"]["quarter_car"]["M_drive"] - of["start"]["wheel"]["s"] * m * G) / R / (m + J_Z / R**2)
     title = "launch from rest by the hub motor"
     print(f"{title.capitalize()}.", judges.Finding("acceleration of the launch", "m/s2", measured, a), sep="\n")
-    style.use_style()
     fig = figure(f"Quarter car: {title}", 96)
     draw_panels(fig.subplots(2, 2).flat, PANELS_OF_ONE, table)
     leave("suspended", "quarter_car", table, fig)
@@ -118,7 +114,7 @@ def main(name: str, manoeuvre: str = "") -> int:
         if name == "suspended":
             launch_quarter_car()
         else:
-            drive_car(manoeuvre or FIRST)
+            drive_car(manoeuvre)
     except Ended as end:
         print(f"{end.component} ended the run at t = {end.time:.3f} s: {end.message}", file=sys.stderr)
         return 1

@@ -27,7 +27,8 @@ def presets(model: str) -> dict[str, float]:
     if model == "wheel":
         return dict.fromkeys(("s", "slope", "slope_direction", "phi_dot_start"), 0.0)
     found: dict[str, float] = {}
-    rows = (EXAMPLES / "car" / f"{model}.csv").read_text(encoding="utf-8").splitlines()[2:]
+    (source,) = EXAMPLES.glob(f"*/{model}.csv")
+    rows = source.read_text(encoding="utf-8").splitlines()[2:]
     for kind, name, _, starts, *_ in csv.reader(rows):
         if kind == "parameter":
             for wheel, start in zip(WHEELS, starts.split() * 4, strict=False):  # one of each, or one for all

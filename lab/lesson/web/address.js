@@ -59,15 +59,11 @@ export class Link {
     }
   }
 
-  /** The step that is shown stays a place of the browser's history, and the one that comes is another. */
-  leave() {
-    const text = this.write();
-    this.put(text);
-    this.put(text, 'pushState');
-  }
+  /** The step that is shown stays a place of the browser's history. */
+  leave() { this.put(this.write()); }
 
-  /** The step that has come is in the address at once: the way back is a change of it. */
-  arrive() { this.put(this.write()); }
+  /** The one that has come is another, in the address at once: the way back is a change of it. */
+  arrive() { this.put(this.write(), 'pushState'); }
 
   /** Shows what the address says; a wrong one gives the first step and a sentence. */
   follow() {

@@ -2,13 +2,14 @@
 
 import sys
 from argparse import Namespace
+from functools import partial
 
 from lab.vehicles.manoeuvres import EXAMPLES, MANOEUVRES
 from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, suggestion
+from wheelfmu.fmu.values import Fault, one_of
 
 CONTROL = ROOT / "lab" / "vehicles" / "control.py"
 # Each example that is here.
@@ -22,20 +23,19 @@ if "car" in NAMES:
 __doc__ = "\n".join([__doc__, "", *ABOUT])
 
 
-def one_of(names: dict[str, str], what: str, typed: str) -> str:
+def example(typed: str) -> str:
     """A name; Fault if there is none such."""
-    if typed not in names:
-        there = f"there are {', '.join(names)}." if names else "examples/vehicles and control.py are not here."
-        raise Fault(f'there is no {what} "{typed}"; {there}{suggestion(typed, dict.fromkeys(names, ""))}')
-    return typed
+    if not NAMES:
+        raise Fault(f'there is no example "{typed}"; examples/vehicles and control.py are not here.')
+    return one_of(NAMES, typed, "example")
 
 
 OPTIONS = {
-    "name": {"metavar": "NAME", "type": lambda typed: one_of(NAMES, "example", typed)},
+    "name": {"metavar": "NAME", "type": example},
     "manoeuvre": {
         "metavar": "MANOEUVRE",
         "nargs": "?",
-        "type": lambda typed: one_of(dict.fromkeys(MANOEUVRES, ""), "manoeuvre", typed),
+        "type": partial(one_of, MANOEUVRES, kind="manoeuvre"),
         "help": "of the car; if not given, lane",
     },
 }
@@ -55,4 +55,4 @@ def main(given: Namespace) -> int:
             return processes.status(sys.executable, "-P", *words)
         from lab.vehicles.example import main as run
 
-        return run(given.name, given.manoeuvre or "")
+        return run(given.name, given.manoeuvre or "lane")

@@ -11,7 +11,7 @@ import os
 from wheelfmu.fmu import building
 from wheelfmu.fmu.outputs import deliver
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, suggestion
+from wheelfmu.fmu.values import one_of
 
 SOURCES = ("WHEEL_SUNDIALS_SOURCE", "WHEEL_LIBM_SOURCE")
 
@@ -25,11 +25,8 @@ def usage(_words: list[str]) -> str:
 
 
 def reads(words: list[str]) -> list[str]:
-    preset = words[0] if words else "release"
-    if preset not in presets():
-        meant = suggestion(preset, dict.fromkeys(presets(), ""))
-        raise Fault(f'there is no preset "{preset}"; there are {", ".join(presets())}.{meant}')
-    return words or [preset]
+    preset, *options = words or ["release"]
+    return [one_of(presets(), preset, "preset"), *options]
 
 
 def needs(given: list[str]) -> list[str]:

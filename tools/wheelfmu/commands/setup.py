@@ -2,23 +2,17 @@
 Python packages into the folder .venv, in the versions of requirements.lock. Other commands set themselves up."""
 
 from argparse import Namespace
+from functools import partial
 
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, suggestion
+from wheelfmu.fmu.values import one_of
 
 LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 WORDS = ["test", "all", "check", "tidy", "asan", "browser", "release", "platforms", *LAB]
 ABOUT = f"a group besides what ./scripts/run needs: {', '.join(WORDS)} (all: ./scripts/test all; check: linters)"
 
 
-def word(text: str) -> str:
-    """One of them; Fault if it is none."""
-    if text not in WORDS:
-        raise Fault(f'there is no "{text}"; there are {", ".join(WORDS)}.{suggestion(text, dict.fromkeys(WORDS, ""))}')
-    return text
-
-
-OPTIONS = {"words": {"nargs": "*", "metavar": "WORD", "type": word, "help": ABOUT}}
+OPTIONS = {"words": {"nargs": "*", "metavar": "WORD", "type": partial(one_of, WORDS), "help": ABOUT}}
 
 
 def needs(given: Namespace) -> list[str]:

@@ -9,7 +9,7 @@ import argparse
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from difflib import get_close_matches
 from fractions import Fraction
 from functools import cache
@@ -135,6 +135,14 @@ def suggestion(name: str, known: Mapping[str, str]) -> str:
         near += [n for n, about in known.items() if word.search(about)]
     near = near or [spelt[low] for low in get_close_matches(name.lower(), spelt, 1, 0.5)]
     return f" Do you mean {' or '.join([*dict.fromkeys(near)][:3])}?" if near else ""
+
+
+def one_of(names: Collection[str], typed: str, kind: str = "") -> str:
+    """A name as it is typed; Fault if there is none such."""
+    if typed not in names:
+        meant = suggestion(typed, dict.fromkeys(names, ""))
+        raise Fault(f'there is no {kind}{" " * bool(kind)}"{typed}"; there are {", ".join(names)}.{meant}')
+    return typed
 
 
 class Variable(NamedTuple):
