@@ -11,7 +11,6 @@ from pathlib import Path
 
 from wheelfmu.fmu.paths import ROOT
 
-HELPERS = ("__init__", "processes")
 PLACES = {"wheelfmu.commands": Path(__file__).parent}
 PLACES |= {f"lab.{path.parent.name}.commands": path for path in sorted((ROOT / "lab").glob("*/commands"))}
 # The module of each command that is here.
@@ -19,5 +18,5 @@ MODULES = {
     path.stem: f"{package}.{path.stem}"
     for package, folder in PLACES.items()
     for path in folder.glob("[a-z]*.py")
-    if path.stem not in HELPERS
+    if path.stem != "processes"
 }
