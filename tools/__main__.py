@@ -16,7 +16,7 @@ from pathlib import Path
 from subprocess import DEVNULL
 from typing import Any
 
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 from wheelfmu.fmu.paths import LAB, ROOT
 from wheelfmu.fmu.values import Fault
 

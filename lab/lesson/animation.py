@@ -7,7 +7,7 @@ from pathlib import Path
 from PIL import Image
 
 from lab.lesson.browser import chromium, show, surroundings
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 
 FRAMES_PER_SECOND = 12.5
 WINDOW = {"width": 1080, "height": 560}  # CSS pixels

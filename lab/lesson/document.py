@@ -13,7 +13,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader
 
 from lab.lesson.bodies import Body
-from wheelfmu.fmu.outputs import fresh
+from wheelfmu.fmu.files import fresh
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.presets import POINTS, moments, wheels
 from wheelfmu.fmu.presets import bodies as ready_bodies

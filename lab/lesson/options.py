@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from wheelfmu.fmu import outputs
+from wheelfmu.fmu import files
 from wheelfmu.fmu.values import Fault, Parser, variables
 
 GIVEN = ("r_0", "r", "slope", "slope_direction")
@@ -37,7 +37,7 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error("--r_0 and --r are given together or not at all")
     given.output = given.output or given.files[0].with_suffix(".html")
     try:
-        outputs.check([given.output], given.files, is_page, overwrite=given.overwrite)
+        files.check([given.output], given.files, is_page, overwrite=given.overwrite)
     except Fault as fault:
         parser.error(str(fault))
     return given

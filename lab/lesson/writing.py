@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lab.lesson import document, options
 from lab.lesson.bodies import Body, read_bodies
-from wheelfmu.fmu.outputs import check
+from wheelfmu.fmu.files import check
 from wheelfmu.fmu.values import Fault
 
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}

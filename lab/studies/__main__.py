@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from wheelfmu.fmu import outputs
+from wheelfmu.fmu import files
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
 
@@ -58,7 +58,7 @@ def conduct(arguments: argparse.Namespace) -> None:
     written = [*exports, *[picture] * (picture != published)]
     read = [arguments.fmu, arguments.list, arguments.study if "out" not in content else None]
     before = exported(out)
-    outputs.check(
+    files.check(
         [*[Path(out)] * ("://" not in out), *written],
         [path for path in read if isinstance(path, Path)],
         lambda path: path.name in before,

@@ -30,7 +30,7 @@ from distributed import Client, Future, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 
-from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.files import alone
 from wheelfmu.fmu.progress import bar
 from wheelfmu.fmu.values import Fault
 

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 import zarr
 
-from wheelfmu.fmu import outputs
+from wheelfmu.fmu import files
 from wheelfmu.fmu.values import Variable
 
 from .names import QUANTITIES, counters_of, description
@@ -109,7 +109,7 @@ def exported(place: str, more: Collection[str] = ()) -> set[str]:
 
 def export(results: xr.Dataset, path: Path) -> Path:
     """Writes a copy as NetCDF (.nc), or as a table (.csv) with one row per wheel (and time)."""
-    with outputs.fresh(path) as new:
+    with files.fresh(path) as new:
         if path.suffix == ".nc":
             packed = {n: {"zlib": True} for n in results.data_vars if results[n].dtype.kind in "fiu"}
             results.drop_encoding().to_netcdf(new, encoding=packed)

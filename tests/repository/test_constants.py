@@ -5,8 +5,9 @@ import re
 import numpy as np
 import pandas as pd
 
+from wheelfmu.commands.constants import PAGE
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.truth.constants import FACTORS, MOST_ERROR, PAGE, beyond, constants
+from wheelfmu.truth.constants import FACTORS, MOST_ERROR, beyond, constants
 
 
 def test_the_page_of_constants_has_each_with_its_value_unit_and_reason() -> None:

@@ -13,7 +13,7 @@ import pytest
 from support.typed import typing_tests
 
 from wheelfmu.commands import MODULES
-from wheelfmu.fmu.outputs import fresh
+from wheelfmu.fmu.files import fresh
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.progress import bar
 
@@ -140,7 +140,7 @@ def test_of_two_runs_at_once_each_prints_that_its_own_results_are_ready(simulate
 
 def test_only_one_process_at_a_time_uses_a_place(tmp_path: Path) -> None:
     """The second waits for the first; at another place it does not. Each has its own TMPDIR, as host and container."""
-    program = "import sys, time; from wheelfmu.fmu.outputs import alone; from pathlib import Path; t = time.monotonic\n"
+    program = "import sys, time; from wheelfmu.fmu.files import alone; from pathlib import Path; t = time.monotonic\n"
     program += "with alone(Path(sys.argv[1])): print(t(), flush=True); time.sleep(1); print(t())"
 
     def spans(*places: str) -> list[list[float]]:
@@ -213,7 +213,7 @@ def test_a_folder_in_the_place_of_a_file_is_named(simulated: Path) -> None:
 
 
 def test_what_a_killed_command_leaves_goes_with_the_next(tmp_path: Path) -> None:
-    program = "import os, sys; from wheelfmu.fmu.outputs import new_folder; from pathlib import Path\n"
+    program = "import os, sys; from wheelfmu.fmu.files import new_folder; from pathlib import Path\n"
     program += (
         "with new_folder(Path(sys.argv[1])) as new: (new / 'part').touch(); os.kill(os.getpid(), 9 * len(sys.argv[2:]))"
     )

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 import pytest
+from support.playing import Piece, play
 
 from wheelfmu.fmu.driver import OK, FMU2Wheel, Value, Values
 from wheelfmu.truth.scenes import FORCED
-from wheelfmu.truth.schedule import Piece, play
 
 
 @pytest.fixture(params=FORCED, ids=lambda kind: "-".join(map(str, kind.values())))

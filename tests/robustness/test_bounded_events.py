@@ -8,10 +8,10 @@ from time import process_time
 import numpy as np
 import pytest
 from support.bounds import beyond, within
+from support.playing import play
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK
 from wheelfmu.truth.scenes import FORCED
-from wheelfmu.truth.schedule import play
 from wheelfmu.truth.sliding import THROWN
 
 SOON = 5.0  # s of computing, many times what is needed: a scene that chatters takes for ever

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import absolute_error, beyond, within
+from support.playing import Piece
 
 from wheelfmu.fmu.driver import Values, shifted
 from wheelfmu.truth.scenes import FORCED
-from wheelfmu.truth.schedule import Piece
 
 STATES = ("X_O", "Y_O", "psi", "theta", "phi", "psi_dot", "theta_dot", "phi_dot")
 RUNGE_KUTTA: Values = {"formulation": 2, "method": 4}

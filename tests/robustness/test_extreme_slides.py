@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from robustness.sweep import similar
 from support.bounds import EPSILON, absolute_error, beyond, within
+from support.playing import play
 
 from wheelfmu.fmu.driver import DISCARD, OK
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
-from wheelfmu.truth.schedule import play
 from wheelfmu.truth.sliding import random_slide
 
 TOLERANCE = 1e-8

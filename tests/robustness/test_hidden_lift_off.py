@@ -9,10 +9,10 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import EPSILON, within
+from support.playing import play
 
 from wheelfmu.fmu.driver import DISCARD, LAST_SUCCESSFUL_TIME, OK
 from wheelfmu.truth.scenes import FORCED, PAPER
-from wheelfmu.truth.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g  # N
 BEGIN, STEP = 0.3, 0.02  # s

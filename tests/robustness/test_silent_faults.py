@@ -6,10 +6,10 @@ from math import pi
 import numpy as np
 import pytest
 from support.bounds import EPSILON, beyond, within
+from support.playing import play
 
 from wheelfmu.fmu.driver import COUNTERS, ERROR, OK
 from wheelfmu.truth.scenes import PAPER, PULLED
-from wheelfmu.truth.schedule import play
 
 WEIGHT = PAPER.m * PAPER.g
 

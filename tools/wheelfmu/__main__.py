@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Any
 
 from wheelfmu import commands
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Parser
 

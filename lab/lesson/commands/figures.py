@@ -4,7 +4,7 @@ results/wheel.html in headless Chromium."""
 from argparse import Namespace
 
 from wheelfmu.commands import processes, run
-from wheelfmu.fmu.outputs import alone, deliver
+from wheelfmu.fmu.files import alone, deliver
 from wheelfmu.fmu.paths import ROOT
 
 NEEDS = ("lesson", "browser")

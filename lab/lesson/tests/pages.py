@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, BrowserContext, Page
 
 from lab.lesson import bodies, options, writing
 from lab.lesson.browser import show, surroundings
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 
 POSE = (*bodies.POSE, "Z_O")
 RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)

@@ -5,7 +5,7 @@ from argparse import Namespace
 
 from lab.reports import options
 from wheelfmu.commands.build import build
-from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.files import alone
 from wheelfmu.fmu.paths import ROOT
 
 reads = options.arguments

@@ -5,7 +5,7 @@ import shutil
 from argparse import Namespace
 
 from wheelfmu.commands import processes
-from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.files import alone
 from wheelfmu.fmu.paths import ROOT
 
 SOURCE, SITE = ROOT / "lab" / "site", ROOT / "build" / "site"

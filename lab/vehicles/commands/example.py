@@ -7,7 +7,7 @@ from functools import partial
 from lab.vehicles.manoeuvres import EXAMPLES, MANOEUVRES
 from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
-from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.files import alone
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, one_of
 

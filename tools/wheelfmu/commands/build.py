@@ -9,7 +9,7 @@ import json
 import os
 
 from wheelfmu.fmu import building
-from wheelfmu.fmu.outputs import deliver
+from wheelfmu.fmu.files import deliver
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import one_of
 

@@ -11,6 +11,7 @@ from wheelfmu.commands import processes
 from wheelfmu.commands.build import build
 from wheelfmu.fmu.paths import ROOT
 
+PAGE = ROOT / "docs" / "constants.md"
 NEEDS = ("test",)
 OPTIONS = {"--check": {"action": "store_true", "help": "writes nothing"}}
 
@@ -18,13 +19,14 @@ OPTIONS = {"--check": {"action": "store_true", "help": "writes nothing"}}
 def main(given: Namespace) -> None:
     from fmpy import extract  # noqa: PLC0415
 
+    from wheelfmu.publishing.markdown import page  # noqa: PLC0415
     from wheelfmu.truth import constants  # noqa: PLC0415
 
     build("constants")
     chosen = constants.constants()
     table = constants.measured(extract(str(ROOT / "build" / "constants" / "wheel.fmu")), chosen)
     if not given.check:
-        constants.PAGE.write_text(constants.page(chosen, table), encoding="utf-8")
+        PAGE.write_text(page("constants.md.j2", **constants.described(chosen, table)), encoding="utf-8")
     beyond = constants.beyond(table)
     print(*(f"{name} x {factor:g}: {said}" for name, factor, said in beyond), sep="\n", file=sys.stderr)
     if beyond:

@@ -9,7 +9,7 @@ and prints the commands that tag it. All sources must be committed, because dist
 
 from argparse import Namespace
 
-from wheelfmu.fmu.outputs import alone
+from wheelfmu.fmu.files import alone
 from wheelfmu.fmu.paths import ROOT
 
 NEEDS = ("release", "platforms", "test", "check", *["site"] * (ROOT / "lab" / "site").exists())

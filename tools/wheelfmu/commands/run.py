@@ -45,7 +45,7 @@ from subprocess import PIPE, STDOUT
 
 from wheelfmu.commands import build, processes
 from wheelfmu.fmu import start_values
-from wheelfmu.fmu.outputs import deliver, new_folder
+from wheelfmu.fmu.files import deliver, new_folder
 from wheelfmu.fmu.paths import ROOT
 
 SCENES = {"free": "No rolling resistance", "friction": "Rolling resistance"}

@@ -13,7 +13,7 @@ from argparse import Namespace
 from subprocess import STDOUT, check_output
 
 from wheelfmu.commands import processes
-from wheelfmu.fmu.outputs import elapsed, step
+from wheelfmu.fmu.files import elapsed, step
 from wheelfmu.fmu.paths import ROOT
 
 OPTIONS = {"which": {"nargs": "?", "choices": ["quick", "all"], "help": "see above"}}

@@ -25,7 +25,7 @@ from matplotlib.textpath import TextPath
 from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.presets import MOMENTS, doubt
 from wheelfmu.fmu.start_values import PAPER_S, RUN, values

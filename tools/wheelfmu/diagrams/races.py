@@ -19,7 +19,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
-from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.files import worded
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.start_values import CHECKS, PAPER_S, RUN, values
 from wheelfmu.fmu.values import variables

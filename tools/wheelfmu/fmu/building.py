@@ -15,7 +15,7 @@ from pathlib import Path
 from subprocess import PIPE, STDOUT
 from typing import Any, TextIO
 
-from .outputs import alone, named
+from .files import alone, named
 from .paths import build_folder
 
 CMAKE = ("cmake", "-G", "Unix Makefiles")

@@ -9,10 +9,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from wheelfmu.fmu.outputs import step
+from wheelfmu.fmu.files import step
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.publishing.markdown import page, said
-from wheelfmu.release import compiling, fmu, folder, libraries, platforms
+from wheelfmu.release import assembly, compiling, folder, libraries, platforms
 
 OUT = ROOT / "build" / "wheel-release"
 REPORT = ROOT / "docs" / "results" / "platforms.md"
@@ -27,7 +27,9 @@ def build_elsewhere(first: Path, scratch: Path) -> str:
     sources = shutil.copytree(ROOT, scratch / "sources", ignore=own)
     sundials = os.environ.get("WHEEL_SUNDIALS_SOURCE") or next((ROOT / "build" / "sundials").glob("*/vendor"))
     sundials = shutil.copytree(sundials, scratch / "sundials")
-    second = fmu.write(scratch / "out", sources, shutil.copytree(compiling.compiler(), scratch / "zig"), str(sundials))
+    second = assembly.write(
+        scratch / "out", sources, shutil.copytree(compiling.compiler(), scratch / "zig"), str(sundials)
+    )
     if first.read_bytes() != second.read_bytes():
         other = shutil.copy(second, OUT / "other.fmu")
         raise SystemExit(f"Two builds in two folders differ: {first} and {other}.")
@@ -56,7 +58,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as place:
         scratch = Path(place)
         step("the libraries of all platforms")
-        released = fmu.write(OUT)
+        released = assembly.write(OUT)
         step("the libraries as files")
         table = libraries.table(OUT)
         step("the contract's tests on the released Linux library")

@@ -16,7 +16,7 @@ import fmpy
 from fmpy.ssp.ssd import read_ssv
 from jinja2 import Environment, FileSystemLoader
 
-from wheelfmu.release.fmu import EVIDENCE
+from wheelfmu.release.assembly import EVIDENCE
 
 HERE = Path(__file__).parent
 SETS = tomllib.loads((HERE / "parameter_sets.toml").read_text(encoding="utf-8"))

@@ -10,7 +10,7 @@ import sys
 from hashlib import sha256
 from pathlib import Path
 
-from wheelfmu.fmu.outputs import deliver
+from wheelfmu.fmu.files import deliver
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.publishing.markdown import page
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import lief
 from tabulate import tabulate
 
-from wheelfmu.release.fmu import BINARIES, UNIVERSAL
+from wheelfmu.release.assembly import BINARIES, UNIVERSAL
 
 GLIBC_FLOOR = (2, 17)
 MACOS_FLOOR = [11, 0, 0]

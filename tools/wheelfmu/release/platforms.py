@@ -16,8 +16,8 @@ import wasmtime
 from tabulate import tabulate
 
 from wheelfmu.fmu.paths import ROOT
+from wheelfmu.release.assembly import ARM, ARM_MAC, INTEL_MAC, LINUX, WINDOWS
 from wheelfmu.release.compiling import WASM, build
-from wheelfmu.release.fmu import ARM, ARM_MAC, INTEL_MAC, LINUX, WINDOWS
 
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)
 OUTPUTS = [v.name for v in DESCRIPTION.modelVariables if v.causality == "output" and v.type == "Real"]

@@ -202,9 +202,6 @@ def measured(folder: str, chosen: Sequence[Constant]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["name", "factor", "largest", "error", "growth", "of", "work", "by"])
 
 
-# ---- the page ----
-
-PAGE = ROOT / "docs" / "constants.md"
 # Where a factor leads beyond the limits, as far as that may go, error and work, and why it is left so.
 ORDER = "cvode_engine.highest_adams_order"
 EDGES: dict[tuple[str, float], tuple[float, float, str]] = {
@@ -230,48 +227,13 @@ def said(row: Any) -> str:
     return ", ".join(filter(None, (error, work))) or "–"
 
 
-def page(chosen: Sequence[Constant], table: pd.DataFrame) -> str:
+def described(chosen: Sequence[Constant], table: pd.DataFrame) -> dict[str, Any]:
+    """Rows, edges and limits, for their page."""
     figures = {(row.name, row.factor): said(row) for row in table.itertuples()}
-    lines = [
+    rows = [
         [f"`{each.name}`", f"`{each.value}`", each.unit, each.reason, *(figures[each.name, f] for f in FACTORS)]
         for each in chosen
     ]
-    rows = "\n".join("| " + " | ".join(line) + " |" for line in lines)
-    edges = "\n".join(f"- `{name}`, times {factor:g}: {why}" for (name, factor), (_, _, why) in EDGES.items())
-    limits = {"error": MOST_ERROR, "work": MOST_WORK, "count": len(SCENES) * SEEDS, "kinds": ", ".join(SCENES)}
-    return PAGE_TEXT.format(rows=rows, edges=edges, **limits)
-
-
-PAGE_TEXT = """# Constants of the solver
-
-The equations, the solver, the unfolded motion and the run contain numbers that were chosen, not derived. Each is a
-`CONSTANT` in `fmu-src` with its unit and its reason. How much do the results depend on these choices? Before each
-release `./scripts/constants` halves and doubles one constant at a time, runs {count} random scenes ({kinds}) at
-tolerances of 1e-5 and 1e-8, and writes this table.
-
-- *error* is the largest distance from a run at a tolerance of 1e-12, divided by the tolerance and by the growth of a
-  small change of the start. It stays below {error:g}.
-- *work* is the number of evaluations of rates and watched functions, divided by that of the unchanged constant. It
-  stays below {work:g}.
-
-The kind of scenes in which a measure grows most is in brackets. A dash means that nothing grows by more than 1 %.
-
-| file and name | value | unit | reason | half | double |
-|:--|:--|:--|:--|:--|:--|
-{rows}
-
-These changes exceed a limit:
-
-{edges}
-
-The scenes do not cover the constants of model exchange (`exchange`), of difference quotients (`slopes`), of messages
-(`logbook`) and of the most work of a call (`motion`). These are tested in `tests/exchange`, `tests/contract` and
-`tests/robustness`.
-
-These numbers are not in the table:
-
-- coefficients of the methods, and the published bounds within which a step grows or shrinks
-- multiples of the rounding of a number, and the limits of a caller's values
-- in the equations in C, which read no environment, `WHEEL_LEAST_ROOM` and the parts of a circle in which
-  `wheel_slip_direction` looks for a slip, which `tests/equations/test_rare_geometry.py` tests
-"""
+    edges = [f"`{name}`, times {factor:g}: {why}" for (name, factor), (_, _, why) in EDGES.items()]
+    count, kinds = len(SCENES) * SEEDS, ", ".join(SCENES)
+    return {"rows": rows, "edges": edges, "error": MOST_ERROR, "work": MOST_WORK, "count": count, "kinds": kinds}

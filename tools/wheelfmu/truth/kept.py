@@ -14,7 +14,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from wheelfmu.fmu.outputs import fresh
+from wheelfmu.fmu.files import fresh
 
 FOLDERS = 4
 

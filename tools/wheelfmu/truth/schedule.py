@@ -1,7 +1,6 @@
 """Inputs as cubic polynomials over intervals of time: exact for the FMU and for the reference alike."""
 
 from bisect import bisect_right
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -9,7 +8,6 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import ArrayLike, NDArray
 
-from wheelfmu.fmu.driver import OK, FMU2Wheel
 from wheelfmu.truth.reference import Inputs
 
 INPUTS = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3", "M_brake", "psi_dot_guide", "theta_dot_guide")
@@ -46,22 +44,3 @@ class Schedule:
             return Inputs()
         force, moment = partial(values, slice(3)), partial(values, slice(3, 6))
         return Inputs(force, moment, self.jumps, lambda t: values(slice(6, 7), t)[0])
-
-
-# From this instant on; by input the coefficients of 1, t, t^2, t^3, t counted from the instant.
-Piece = tuple[float, dict[str, Sequence[float]]]
-
-
-def play(w: FMU2Wheel, pieces: Sequence[Piece], stop: float, cuts: Sequence[float] = ()) -> int:
-    """Steps to the begin of each piece, to each cut and to `stop`; the status of the last step."""
-    begins = [begin for begin, _ in pieces]
-    points = sorted({*begins, *(t for t in cuts if begins[0] < t < stop), stop})
-    status = OK
-    for t, end in zip(points, points[1:], strict=False):
-        begin, inputs = max((piece for piece in pieces if piece[0] <= t), key=lambda piece: piece[0])
-        w.give(inputs, t - begin)
-        w.time = t
-        status = w.step_to(end)
-        if status != OK:
-            break
-    return status
