@@ -27,6 +27,7 @@ WHEELS = (0.3, 2.0, 0.0603, 0.12), (0.35, 3.0, 0.1405, 0.28)  # radius, m, J_x, 
 REAR = 85.0, (0.3, 0.9), (9.2, 11.0, 2.8, 2.4)  # frame with rider: m; centre of mass; I_xx, I_yy, I_zz, I_xz, z down
 FORK = 4.0, (0.9, 0.7), (0.05892, 0.06, 0.00708, -0.00756)
 # The published linear equations M q'' + v C_1 q' + (g K_0 + v^2 K_2) q = 0 of q = (lean, steer), both to the right.
+# They hold for the numbers above, whatever g is.
 M = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
 C_1 = np.array([[0, 33.86641391492494], [-0.85035641456978, 1.68540397397560]])
 K_0 = np.array([[-80.95, -2.59951685249872], [-2.59951685249872, -0.80329488458618]])
@@ -97,7 +98,7 @@ class Wheel:
         self.loads = [ref[n] for n in ("F_X", "F_Y", "F_Z", "M_1", "M_2")]
         self.answers = [ref[n] for n in ("lambda_1", "lambda_2", "lambda_3", "theta_ddot", "psi_ddot")]
         self.radius, self.m, self.fmu = radius, m, instantiate_fmu(extract("wheel.fmu"), description, "ModelExchange")
-        start = {"m": m, "r_0": radius, "r": 0, "J_x": J_x, "J_y": J_x, "J_z": J_z, "theta_start": pi / 2}
+        start = {"m": m, "r_0": radius, "r": 0, "J_x": J_x, "J_y": J_x, "J_z": J_z, "g": g, "theta_start": pi / 2}
         self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
         self.fmu.setReal([ref[n] for n in start], [float(x) for x in start.values()])

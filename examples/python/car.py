@@ -15,7 +15,8 @@ ref = {v.name: v.valueReference for v in description.modelVariables}
 READ = [ref[n] for n in ("X_O", "Y_O", "X_O_dot", "Y_O_dot", "psi", "M_guide_2", "lambda_y")]
 SET = [ref[n] for n in ("F_X", "F_Y", "F_Z", "psi_dot_guide")]
 HUBS = np.array([[1.2, 0.75], [1.2, -0.75], [-1.4, 0.75], [-1.4, -0.75]])  # of the body: forward, left
-m_B, J_B, J_x, m, L, R, k, c, h, v = 1200.0, 1900.0, 0.9, 20.0, 2.6, 0.35, 3e5, 4e3, 0.004, 12.0
+m_B, J_B, L, m, J_x, R, r = 1200.0, 1900.0, 2.6, 20.0, 0.9, 0.35, 0.05  # body, wheelbase; a wheel, R = r_0 + r
+k, c, h, v = 3e5, 4e3, 0.004, 12.0
 
 
 def steer(hub, t):
@@ -29,7 +30,8 @@ def started(x, y):
     wheel.setupExperiment(startTime=0.0)
     wheel.enterInitializationMode()
     wheel.setBoolean([ref["guided"]], [True])
-    start = {"theta_start": pi / 2, "psi_start": 0, "X_O_start": x, "Y_O_start": y, "phi_dot_start": -v / R}
+    start = {"m": m, "r_0": R - r, "r": r, "J_x": J_x, "J_y": J_x, "J_z": 2 * J_x}
+    start |= {"theta_start": pi / 2, "psi_start": 0, "X_O_start": x, "Y_O_start": y, "phi_dot_start": -v / R}
     wheel.setReal([ref[n] for n in start], [float(value) for value in start.values()])
     wheel.exitInitializationMode()
     return wheel

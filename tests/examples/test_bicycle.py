@@ -46,6 +46,24 @@ def test_its_motion_has_the_published_eigenvalues_weave_and_capsize_speed(bicycl
         assert below * above < 0
 
 
+def test_gravity_at_the_top_of_the_file_is_that_of_the_wheels(
+    bicycle: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A third of the earth's; partner: wheels that keep the earth's."""
+    times, push = np.linspace(0, 2, 11), bicycle.SMALL
+    monkeypatch.setattr(bicycle, "g", 3.71)
+    exact = bicycle.linear(5.0, push, times)
+
+    def error() -> float:
+        return float((np.abs(bicycle.ride(5.0, push, times) - exact).max(1) / np.abs(exact).max(1)).max())
+
+    beyond(error(), 0.1, "the earth's in the wheels")
+    monkeypatch.setattr(bicycle, "wheels", [bicycle.Wheel(*values) for values in bicycle.WHEELS])
+    within(error(), 1e-6, "lean, steer and their rates off the equations, of the largest")
+    for wheel in bicycle.wheels:
+        wheel.fmu.freeInstance()
+
+
 class Carried:
     """Both wheels guided, in co-simulation, rigidly coupled to the frames: ask, solve, pass."""
 

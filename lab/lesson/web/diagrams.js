@@ -348,7 +348,8 @@ function arrow(pen, [x, y], [dx, dy], strokeStyle, name) {
   for (const side of [-0.5, 0.5]) pen.lineTo(x + dx - head * (ux - side * uy), y + dy - head * (uy + side * ux));
   pen.fill();
   Object.assign(pen, {textAlign: 'left', textBaseline: 'middle'});
-  write(pen, name, x + dx + 7 + 3 * ux, y + dy + 10 * uy, 12);
+  const within = Math.min(Math.max(y + dy + 10 * uy, 7), pen.canvas.clientHeight - 7);  // of the diagram
+  write(pen, name, x + dx + 7 + 3 * ux, within, 12);
 }
 
 /** The friction circle: the road's force, forward up and left to the left, and the direction of the slip. */
