@@ -50,6 +50,15 @@ def test_the_rates_of_a_carriers_course_count_until_something_is_set(wheel, scen
     beyond(np.max(np.abs(left - rates(w.put(**dict.fromkeys(TURN, 0.0))))), 1.0, "rates where the carrier stops")
 
 
+def test_the_slope_of_a_load_ends_with_its_step(wheel):
+    """A load has no course as a carrier has: it stays where it arrived, with the rates of one that is set there."""
+    w = wheel().start(**GENERAL).give({"F_Y": (1.0, 5.0), "M_2": (0.5, -3.0)}).to(0.1)
+    left, (F_Y, M_2) = rates(w), w.get("F_Y", "M_2")
+    assert (left == rates(w.put(F_Y=F_Y, M_2=M_2))).all()
+    sloped = rates(w.give({"F_Y": (F_Y, 5.0), "M_2": (M_2, -3.0)}))
+    beyond(np.max(np.abs(left - sloped)), 1.0, "rates under a slope that goes on, apart")
+
+
 @pytest.mark.parametrize("formulation", [2, 3])
 @pytest.mark.parametrize("name", ["thrown", "turns at once"])
 def test_output_derivatives_follow_a_slip_that_turns_ever_faster_as_it_ends(wheel, name, formulation):

@@ -8,7 +8,7 @@ import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK, FMU2Wheel
-from wheelfmu.truth.exchange import exchange
+from wheelfmu.truth.exchange import exchange, loaded
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.scenes import GENERAL
 
@@ -103,6 +103,9 @@ def test_only_a_guided_wheel_in_co_simulation_takes_them(library: Library) -> No
         w.put(**{**LEANS, **FREE})
         assert w.set_input_derivatives(["theta_dot_guide"], [[0.0], [0.1]]) == OK
         assert w.initialise() == ERROR and "these inputs need guided = true" in w.said()
+    with loaded(library).new() as w:
+        assert w.put(**LEANS, psi_dot_guide=0.1).initialise() == ERROR and "co-simulation" in w.said()
+        assert w.reset() == OK and w.put(**LEANS).initialise() == OK  # the partner
 
 
 def test_absurd_rates_are_refused_and_the_largest_can_be_computed(library: Library) -> None:

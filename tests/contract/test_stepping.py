@@ -180,6 +180,26 @@ def test_each_start_of_bdf_counts_a_jacobian(wheel):
     assert [later[1] - before[1] for before, later in pairwise(counts)] == [1] * 7  # the partner: they are starts
 
 
+def test_only_cvode_starts_anew_at_each_communication_point_of_a_course_and_counts_it(wheel):
+    found = []
+    for method in (2, 3, 4):
+        w, counts = wheel().start(method=method), []
+        for k in range(8):
+            w.give({"M_3": (0.1, 0.3, -0.2)}, since=0.1 * k).by(0.1)
+            counts.append(w.get("n_restarts")[0])
+        found.append([later - before for before, later in pairwise(counts)])
+    assert found == [[1] * 7, [1] * 7, [0] * 7]
+
+
+def test_a_step_that_ends_at_a_jump_of_a_varying_input_evaluates_nothing_beyond_its_stages(wheel):
+    """DOP853 has twelve; the rate at the end of a step is the first of the next only where nothing changes."""
+    w, counts = wheel().start(method=4), []
+    for k in range(20):
+        counts.append(w.give({"M_3": (0.1 * k, 0.3)}).by(0.01).get("n_steps", "n_rhs"))
+    steps, evaluations = np.diff(counts, axis=0)[2:].T
+    assert (steps == 1).all() and (evaluations == 12).all()
+
+
 @pytest.mark.parametrize("moments", [{"J_x": 0.7, "J_y": 1.2}, {"J_x": 0.9, "J_y": 0.9}], ids=["any J", "J_x = J_y"])
 def test_the_large_system_is_left_out_whatever_the_moments_of_inertia_are(counters, moments):
     automatic, reduced, multibody = (counters(**moments, s=0.03, formulation=k) for k in (1, 2, 3))

@@ -148,6 +148,7 @@ LIVES: dict[str, Callable[[FMU2Wheel], object]] = {
 } | {"is_pulled": is_pulled, "is_driven": is_driven}
 LIVES |= {name: lambda w, values=values: w.start(**values).to(0.2, 0.9) for name, values in KINDS.items()}
 NEXT = KINDS | BASES | {"at rest": AT_REST, "pulled": PULLED, "pulled, friction": {**PULLED, "s": 0.01}}
+NEXT |= {"at rest in a stiff law": {**KINDS["stiff law"], **AT_REST}}
 
 
 def later(w: FMU2Wheel) -> list[object]:

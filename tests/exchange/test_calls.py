@@ -92,6 +92,17 @@ def test_directional_derivatives_are_differences_under_every_law(library: Librar
     beyond((np.abs(got * (1 + 1e-6) - want) / size).max(), 2e-7, "Jacobian a millionth larger, relative")
 
 
+def test_derivatives_by_other_states_than_the_spin_do_not_know_the_width_of_the_law(library: Library) -> None:
+    """Spinning far outside of any layer; partner: another s."""
+    found = []
+    for changes in ({"omega_s": 1e-2}, {"omega_s": 1e-9}, {"omega_s": 1e-2, "s": 0.0301}):
+        with at_odd(library, **{"s": 0.03, "friction_law": 2} | changes) as wheel:
+            found.append(wheel.jacobian(REACTIONS, STATES[2:-1]))
+    size = np.abs(found[0]).max()
+    within(np.abs(found[1] - found[0]).max() / size, 1e-9, "derivatives under the two widths apart, relative")
+    beyond(np.abs(found[2] - found[0]).max() / size, 1e-6, "derivatives with another s, relative")
+
+
 def test_state_and_friction_may_be_set_at_any_time_and_the_law_follows(library: Library) -> None:
     with exchange(library) as wheel:
         frictionless = wheel.derivatives()

@@ -128,3 +128,17 @@ def test_a_quick_function_is_looked_at_where_it_comes_near_zero_inside_a_step_al
     assert one.run(1.0) == (EVENT if depth > 0 else STEPPED)
     if depth > 0:
         within(absolute_error(one.now.known, place - sqrt(depth) / 2), 64 * EPSILON, "instant of the fall, s")
+
+
+def test_a_quick_function_costs_nothing_before_it_comes_near_zero_and_once_it_is_far_again(solver, method):
+    def evaluations(near):
+        """Up to t = 1.5, and from there on; the function is near zero up to t = 0.5, or there is none."""
+        one = solver(method, tolerance=1e-6, longest_step=0.2, quick=near and (lambda t, y: near if t < 0.5 else 1))
+        one.run(1.5)
+        before = one.now.rhs
+        one.run(4.0)
+        return before, one.now.rhs - before
+
+    none, near = evaluations(None), evaluations(0.05)
+    assert evaluations(1) == none and near[1] == none[1]
+    assert near[0] > none[0]  # the partner

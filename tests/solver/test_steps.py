@@ -90,6 +90,19 @@ def test_after_a_change_runge_kutta_steps_no_further_than_the_last_interval_and_
     assert limited.rhs - before.rhs == 12  # what only its dense output needs is left out
 
 
+def test_two_changes_at_one_instant_limit_no_step(solver, method):
+    def first_step(interval):
+        one = solver(method, longest_step=0.1)
+        one.restart(1.0, harmonic(1.0))
+        one.limit_first_step(interval)
+        one.step()
+        return one.now.known - 1
+
+    assert first_step(0.0) == first_step(1e-16) == first_step(1.0)
+    if method in ("runge_kutta", "collocation"):  # the partner
+        within(relative_error(first_step(1e-3), 1e-3), 1e-9, "first step, relative")
+
+
 def test_after_an_event_right_behind_the_start_of_a_step_a_thousandth_of_it_is_next_even_from_bytes(solver, method):
     falls = [9.0]
     one = solver(method, "clock", longest_step=0.1, each_step=lambda t, y: falls[0] - t)

@@ -45,8 +45,7 @@ def main(given: Namespace) -> None:
         print(f"The tests passed in {elapsed():.0f} s; ./scripts/test all runs every check.")
         return
     step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
-    processes.side_by_side(processes.command("build", "asan"), RELEASE)
-    processes.side_by_side(processes.command("tidy"), processes.command("lint"))
+    processes.side_by_side(RELEASE, *(processes.command(*words) for words in (("build", "asan"), ("tidy",), ("lint",))))
 
     step("all tests, and beside them a minute of fuzzing")
     fuzzed = ROOT / "build" / "fuzz.out"
