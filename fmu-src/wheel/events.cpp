@@ -11,19 +11,19 @@ namespace wheel {
 namespace {
 
 bool can_change_layer(const Setup& setup, const InForce& now) {
-  return setup.has_layer() && now.scene.friction.kind != WHEEL_FRICTIONLESS;
+  return setup.has_layer() && now.law().kind != WHEEL_FRICTIONLESS;
 }
 
 // (y) => how far the spin is from the edge of the layer
 double way_to_layer(const Setup& setup, const InForce& now, double, const double* y) {
   const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
-  const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
-  return (now.scene.friction.kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
+  const double inside = edge - std::fabs(omega_z), outside = now.law().sigma * omega_z - edge;
+  return (now.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 
 // In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
-  const WheelFrictionKind law = now.scene.friction.kind;
+  const WheelFrictionKind law = now.law().kind;
   if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
@@ -36,18 +36,18 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
 // (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
 // that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  const WheelFriction& law = now.scene.friction;
+  const WheelFriction& law = now.law();
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
     return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
-  return -now.scene.load.brake / setup.moment_scale;
+  return -now.scene_at(t).load.brake / setup.moment_scale;
 }
 
-int spin_alone(const InForce& now) { return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
+int spin_alone(const InForce& now) { return now.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
-  const WheelFrictionKind law = now.scene.friction.kind;
+  const WheelFrictionKind law = now.law().kind;
   if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
   decide_law(setup, t, y, now, law == WHEEL_HELD);
 }
@@ -118,7 +118,7 @@ constexpr EventRow event_rows[] = {
      .exchanged = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
-     .limit = [](const InForce& now) { return now.scene.mu_slide; }},
+     .limit = [](const InForce& now) { return now.mu_slide(); }},
     {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = height_of,
@@ -149,7 +149,7 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
   if (row.observed) now.cross(row.event);
-  const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();
+  const bool acts = now.law().kind != WHEEL_FRICTIONLESS || now.slides();
   return row.follow || (row.event == Event::lost_contact && acts) ? Consequence::bends : Consequence::goes_on;
 }
 

@@ -75,18 +75,20 @@ double* load_entry(WheelLoad& load, int input) {
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load) {
-  for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
+void Inputs::set_load_at(double t, WheelLoad& load) const {
+  const double tau = t - origin;
+  for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(c[i], tau);
   load.guide[0] = load.guide[1] = 0;
-  if (guides) add_guide(inputs + guide_input, tau, load);
+  if (guides) add_guide(c + guide_input, tau, load);
   if (!(load.brake > 0)) load.brake = 0;
 }
 
-WheelLoad load_rate_of(const Polynomials& inputs, double tau) {
+WheelLoad Inputs::load_rate_at(double t) const {
+  const double tau = t - origin;
   WheelLoad rate = {};
-  for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(inputs[i], tau);
-  for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * inputs[i][2] + tau * 6 * inputs[i][3];
-  if (value_at(inputs[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
+  for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(c[i], tau);
+  for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * c[i][2] + tau * 6 * c[i][3];
+  if (value_at(c[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
   return rate;
 }
 

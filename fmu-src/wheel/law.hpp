@@ -11,9 +11,6 @@ namespace wheel {
 // friction. In y it writes the slip, and what a jump of the carrier's rates changes.
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
-// (road, t, inputs) => in_force: both, and what follows from them alone. A mu_max set below mu_slide counts for both.
-void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
-
 // (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
 // it had always turned so.
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
