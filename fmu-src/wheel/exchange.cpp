@@ -78,15 +78,6 @@ Event ending_at(const Record& r) {
   return ending;
 }
 
-void decide_friction(Record& r, bool led) {
-  Run& run = r.run;
-  const EventRow& row = event_row(Event::spin_changes);
-  if (led && has_occurred(row, r))
-    follow_event(row, r.setup, run.t, run.y, run.in_force);
-  else
-    decide_law(r.setup, run.t, run.y, run.in_force);
-}
-
 // What `decide` does, in y. omega_z is the state that an event changes.
 bool decide_anew(Wheel& w) {
   Run& run = w.run;
@@ -103,7 +94,10 @@ bool decide_anew(Wheel& w) {
   if (ends_here()) return false;
   for (const EventRow& row : event_rows)
     if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
-  decide_friction(w, led);
+  if (const EventRow& spin_changes = event_row(Event::spin_changes); led && has_occurred(spin_changes, w))
+    follow_event(spin_changes, w.setup, run.t, run.y, run.in_force);
+  else
+    decide_law(w.setup, run.t, run.y, run.in_force);
   log_changes(w, before);
   if (ends_here()) return false;  // under the law that was decided
   return omega_z != spin || differ(before.law(), run.in_force.law()) ||

@@ -37,15 +37,12 @@ bool has_changed(const Wheel& w) {
   return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
-// What a stage has come to: an event ends the run, and the run stands at it; a failure has a reason, null: the
-// solver's.
+// What a stage has come to.
 struct Result {
   Outcome outcome = Outcome::stepped;
-  Event ending = Event::none;
-  const char* failure = nullptr;
+  Event ending = Event::none;     // the event that ends the run, which stands at it
+  const char* failure = nullptr;  // its reason; null: see the solver
 };
-Result ended_by(Event event) { return {.outcome = Outcome::event, .ending = event}; }
-Result failed(const char* failure = nullptr) { return {.outcome = Outcome::failed, .failure = failure}; }
 
 // From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
 // before, anew, and goes on counting.
@@ -57,7 +54,7 @@ Result start_solver(Wheel& w) {
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
       again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
-  return done ? Result() : failed();
+  return {.outcome = done ? Outcome::stepped : Outcome::failed};
 }
 
 // Stage 1: what was set since the last step is in force.
@@ -117,17 +114,13 @@ Result set_in_motion(Wheel& w) {
   return {};
 }
 
-// Logs what is observed on the orbit up to t.
-void observe_orbit(Wheel& w, double t) {
-  for (const EventRow& row : event_rows) {
-    const double first = w.orbit.first_time_of(static_cast<int>(row.event));
-    if (first <= t) observe(w, row.event, first);
-  }
-}
-
+// The run goes on to t. What is observed on the orbit is logged where it first occurs.
 void move_to(Wheel& w, double t) {
-  if (w.run.phase == Phase::unfolded && w.orbit.first_time() <= t) observe_orbit(w, t);
   w.run.t = t;
+  if (w.run.phase != Phase::unfolded || w.orbit.first_time() > t) return;
+  for (const EventRow& row : event_rows)
+    if (const double first = w.orbit.first_time_of(static_cast<int>(row.event)); first <= t)
+      observe(w, row.event, first);
 }
 
 // Latest end of the next step on the way to t, s: where an input varies, t, where its polynomial may end, and no step
@@ -162,15 +155,16 @@ Result step_to(Wheel& w, double t) {
   const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work)
-      return failed(
-          "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized "
-          "law is extreme, or the communication step is too long");
+      return {.outcome = Outcome::failed,
+              .failure =
+                  "one call may take no more internal steps: a coupling diverges, a force, a brake or a "
+                  "regularized law is extreme, or the communication step is too long"};
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) {
-      if (!is_about_to_jam(w)) return failed();
+      if (!is_about_to_jam(w)) return {.outcome = outcome};
       move_to(w, solver.known_until());
-      return ended_by(Event::jams);
+      return {.outcome = Outcome::event, .ending = Event::jams};
     }
     if (w.run.in_force.inputs.loaded) look_at_grip(w, t);
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
@@ -180,7 +174,7 @@ Result step_to(Wheel& w, double t) {
     move_to(w, solver.known_until());
     update_state(w);
     const auto event = static_cast<Event>(solver.event());
-    if (ends_run(event_row(event), w.setup)) return ended_by(event);
+    if (ends_run(event_row(event), w.setup)) return {.outcome = outcome, .ending = event};
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
     else if (const Result result = start_solver(w); result.outcome == Outcome::failed)
@@ -193,9 +187,10 @@ Result step_to(Wheel& w, double t) {
 Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return {};
-  if (!w.orbit.ends()) return failed("psi or phi would turn so far that the angle has too few digits");
+  if (!w.orbit.ends())
+    return {.outcome = Outcome::failed, .failure = "psi or phi would turn so far that the angle has too few digits"};
   move_to(w, w.orbit.until());
-  return ended_by(static_cast<Event>(w.orbit.event()));
+  return {.outcome = Outcome::event, .ending = static_cast<Event>(w.orbit.event())};
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless

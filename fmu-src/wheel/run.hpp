@@ -101,7 +101,7 @@ class InForce {
   WheelScene scene_ = {};  // its load: that at the origin of the inputs
 };
 
-// What the caller has set since the last step, which is in force from the next one on.
+// What the caller has set since the last step. It is in force from the next step on; a reading shows it at once.
 enum class News : unsigned char {
   none,   // nothing
   stays,  // nothing; the demand holds each input where it arrived in the step, in which one varied

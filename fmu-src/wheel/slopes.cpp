@@ -178,7 +178,7 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
 
 // (an input or a state) => derivatives by it; the law and the sign of N are kept. Where a slide begins here, the loads
 // decide the direction of the slip.
-bool take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
+void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   const Setup& setup = w.setup;
   Reading reading = read_now(w);
   WheelScene& scene = reading.scene;
@@ -200,7 +200,6 @@ bool take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   begins ? quotients.refine(place, size, reading, move_to)
          : quotients.take(stencils[0], place, first_part * size, reading, move_to);
   quotients.complete();
-  return true;
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -251,11 +250,11 @@ void read_rates(const Wheel& w, Listed outputs, std::size_t count, double* out) 
   Quotients quotients;
   Reading reading = read_now(w);
   bool missing = false;
-  for (std::size_t k = 0; k < count; ++k)
-    if (!row_of(outputs[k]).read_rate) {
-      quotients.ask(outputs[k]);
-      missing = true;
-    }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (row_of(outputs[k]).read_rate) continue;
+    quotients.ask(outputs[k]);
+    missing = true;
+  }
   if (missing) take_along_motion(w, quotients);
   for (std::size_t k = 0; k < count; ++k) {
     const Row& row = row_of(outputs[k]);
@@ -275,7 +274,9 @@ bool add_slopes(const Wheel& w, unsigned known, double seed, Listed unknowns, st
   if (guides && !w.setup.steered()) return true;
   Quotients quotients;
   for (std::size_t k = 0; k < count; ++k) quotients.ask(unknowns[k]);
-  if (!(parameter || guides ? take_by_parameter(w, known, quotients) : take_at_instant(w, known, quotients)))
+  if (!parameter && !guides)
+    take_at_instant(w, known, quotients);
+  else if (!take_by_parameter(w, known, quotients))
     return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * quotients.of(unknowns[k]);
   return true;

@@ -53,18 +53,13 @@ void read_state(const Wheel& w, double* y) {
   run.phase == Phase::unfolded ? w.orbit.read(run.t, y) : w.solver.read(run.t, y);
 }
 
-InForce ahead_of(const Record& r, double* y) {
-  InForce now = r.run.in_force;
-  const bool acts_on = r.run.news == News::none || (r.run.news == News::stays && r.setup.steered());
-  if (!acts_on) enforce(r.setup, r.demand, r.run.t, y, now);
-  return now;
-}
-
 Reading::Reading(const Record& r, const double* y_reached)
-    : setup(&r.setup), t(r.run.t), counters(r.run.counted), transitions(r.run.transitions) {
+    : setup(&r.setup), t(r.run.t), in_force(r.run.in_force), counters(r.run.counted), transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
-  in_force = ahead_of(r, y);
+  // Where inputs stay, a carrier turns on as in the step until the next one begins.
+  const bool acts_on = r.run.news == News::none || (r.run.news == News::stays && setup->steered());
+  if (!acts_on) enforce(*setup, r.demand, t, y, in_force);
   scene = in_force.scene_at(t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
@@ -78,8 +73,7 @@ Reading read_now(const Wheel& w) {
 }
 
 void reset(Wheel& w) {
-  w.demand = Demand(w.demand.kind);
-  w.run = Run();
+  static_cast<Record&>(w) = Record(w.demand.kind);
   w.endings = 0;
 }
 

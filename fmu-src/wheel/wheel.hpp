@@ -1,8 +1,9 @@
-// One wheel: its record, which holds what the caller has set, what follows from it, what is in force and how far the
-// run has come; and the solution as far as it is known. The run has a clock, zero at the start, so that a start time of
-// 1e9 s costs no digits.
+// One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
+// as far as it is known; and its run from the parameters to the end. The run has a clock, zero at the start, so that a
+// start time of 1e9 s costs no digits.
 //
-// The argument states what a function may change: nothing of a const Wheel; of a Record no solution; of a Wheel all.
+// A function changes nothing of a wheel that is passed as const, no solution of one that is passed as a Record, and
+// perhaps all of any other.
 //
 // The other files of this folder, each below those that it needs:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
@@ -35,8 +36,8 @@ struct Record {
 // What can be read at one instant. Positions and velocities, and accelerations and reactions, are computed when they
 // are first asked for and kept; nothing is computed for an output that nobody reads. Fixed axes unless said.
 struct Reading {
-  // (y: the state at the instant reached) => the reading there, with what was set since the last step. The record
-  // stays where it is as long as the reading is in use.
+  // (y: the state at the instant reached) => the reading there, where what was set since the last step is in force at
+  // once. The record stays where it is as long as the reading is in use.
   Reading(const Record& record, const double* y);
 
   const Setup* setup;
@@ -98,11 +99,6 @@ inline void update_state(Wheel& wheel) {
   read_state(wheel, wheel.run.y);
   wheel.run.y_time = wheel.run.t;
 }
-
-// (y: a copy of the state at the instant reached) => in force for what follows, and in y its slip and the carrier's
-// rates: with what was set since the last step, in force at once. Without it all acts on, and until the next step a
-// carrier still turns as in the last.
-InForce ahead_of(const Record& record, double* y);
 
 Reading read_now(const Wheel& wheel);
 
