@@ -87,11 +87,7 @@ auto set(Type type, const fmi2ValueReference variables[], std::size_t count, con
     const auto value = [&](std::size_t k) { return taken(i, listed[k], static_cast<double>(values[k])); };
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, listed[k], value(k))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k)
-      if (listed[k] < wheel::stored_count)
-        wheel::set(i.change(), listed[k], value(k));
-      else
-        wheel::set_state(i.change(), listed[k], value(k));
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.change(), listed[k], value(k));
     return fmi2OK;
   };
 }

@@ -28,11 +28,6 @@ bool can_change_spin(const Setup& setup, const InForce& now) {
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
 
-// (t, y) => capacity that is not needed to hold the wheel
-[[gnu::noinline]] double left_while_held(const Setup& setup, const InForce& now, double t, const double* y) {
-  return hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
-}
-
 // (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
 // that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
@@ -40,7 +35,8 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
+    return std::fabs(spin) > spin_error ? -std::fabs(spin)
+                                        : hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
   return -now.scene_at(t).load.brake / setup.moment_scale;
 }
 
@@ -59,7 +55,7 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   CONSTANT(double, near, 1e3, "least slips", "farther from its end a slip cannot fall to it before the next sample");
   double least = least_slip(setup, t);
   if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
-    const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
+    const Rates rates = rates_of(setup, now.scene_at(t), y);
     const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);

@@ -62,7 +62,7 @@ bool has_occurred(const EventRow& row, const Record& r) {
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else
 // the caller has set it, and it is kept.
 bool is_led(const Record& r) {
-  const WheelScene scene = r.run.in_force.scene_at(r.run.t);
+  const WheelScene& scene = r.run.in_force.scene_at(r.run.t);
   const double spin = r.run.y[WHEEL_OMEGA_3] / r.setup.rate_scale;
   if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
   const double omega_z_dot = rates_of(r.setup, scene, r.run.y).y_dot[WHEEL_OMEGA_3];

@@ -75,7 +75,7 @@ double* load_entry(WheelLoad& load, int input) {
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-void Inputs::set_load_at(double t, WheelLoad& load) const {
+[[gnu::noinline]] void Inputs::set_load_at(double t, WheelLoad& load) const {
   const double tau = t - origin;
   for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(c[i], tau);
   load.guide[0] = load.guide[1] = 0;

@@ -95,13 +95,13 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   now.set_contact(WHEEL_GRIPS);
   decide_law(setup, t, y, now);
   if (grip_left(setup, now, t, y) >= 0) return;
-  const WheelScene scene = now.scene_at(t);
+  const WheelScene& scene = now.scene_at(t);
   const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(scene, y).N < 0;
   if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
-  const WheelScene scene = now.scene_at(t);
+  const WheelScene& scene = now.scene_at(t);
   now.set_law(released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y));
 }
 
@@ -140,7 +140,7 @@ double least_slip(const Setup& setup, double t) {
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   CONSTANT(double, rounding, 1e-12, "1", "of mu_max N");
   CONSTANT(double, rounding_of_zero, 1e-15, "weights", "of a tangential force of zero");
-  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
+  const WheelDynamics dynamics = dynamics_of(setup, now.scene_at(t), y);
   const double* lambda = dynamics.lambda;
   const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
@@ -148,11 +148,12 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
-Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
+[[gnu::noinline]] Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y) {
   CONSTANT(double, rounding_of_capacity, 1e-12, "1", "where rounding alone decides, the wheel stays held");
   CONSTANT(double, rounding_of_tau, 1e-13, "weight times length", "the same without a capacity");
-  scene.friction = held;
-  const WheelDynamics dynamics = dynamics_of(setup, scene, y);
+  WheelScene holding = scene;
+  holding.friction = held;
+  const WheelDynamics dynamics = dynamics_of(setup, holding, y);
   const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};

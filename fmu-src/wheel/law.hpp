@@ -51,7 +51,7 @@ inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.ki
 struct Hold {
   double tau, reserve;
 };
-Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
+Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y);
 
 // rad/s, half the width of the layer of a regularized law (Setup::has_layer).
 CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");

@@ -64,8 +64,7 @@ void look_at_grip(Wheel& wheel, double t) {
   if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
   double y[max_states];
   wheel.solver.read(t, y);
-  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
-  const double mu = wheel_required_friction(dynamics.lambda);
+  const double mu = wheel_required_friction(dynamics_of(setup, now.scene_at(t), y).lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
   wheel.run.grip_due = exceeds ? solver::never : t + setup.time_scale / looks;
   if (exceeds)

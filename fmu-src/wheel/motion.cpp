@@ -141,8 +141,7 @@ bool is_about_to_jam(const Wheel& w) {
   const double reached = w.solver.known_until();
   double y[max_states];
   w.solver.read(reached, y);
-  const WheelScene scene = w.run.in_force.scene_at(reached);
-  return wheel_slip(&scene, y, y[WHEEL_CHI]).room < little_room;
+  return wheel_slip(&w.run.in_force.scene_at(reached), y, y[WHEEL_CHI]).room < little_room;
 }
 
 // Stage 3 of a motion that is stepped through, until

@@ -15,16 +15,15 @@ namespace {
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
 // (t, y) => y_dot; returns the least margin. Of few states are only the equations of a wheel that rolls. States beyond
-// those of the equations rest. Flattened: around a call for an input that varies, registers would be saved at each
-// evaluation.
+// those of the equations rest.
 template <int states>
-[[gnu::flatten]] double derivative(void* owner, double t, const double* y, double* y_dot) {
+double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
+  const WheelScene& scene = now.scene_at(t);
   const WheelFormulation& formulation =
-      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, now.contact());
-  const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
-  const double N = now.at(t, rates);
+      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
+  const double N = formulation.derivative(&scene, y, y_dot);
   if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
@@ -73,7 +72,7 @@ double margin(void* owner, int event, double t, const double* y) {
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
-  const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
+  const WheelScene& scene = wheel_of(owner).run.in_force.scene_at(t);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 

@@ -84,21 +84,16 @@ class InForce {
   bool slides() const { return contact() == WHEEL_SLIDES; }
   double mu_slide() const { return scene_.mu_slide; }
 
-  WheelScene scene_at(double t) const {
-    WheelScene scene = scene_;
-    if (inputs.varies) inputs.set_load_at(t, scene.load);
-    return scene;
-  }
-  // What `use` makes of the scene at t, without a copy of one that stays.
-  template <class Use>
-  auto at(double t, const Use& use) const {
-    return inputs.varies ? use(scene_at(t)) : use(scene_);
+  // Until it is asked for at another instant: most inputs are constant, and a copy costs as much as an evaluation.
+  const WheelScene& scene_at(double t) const {
+    if (inputs.varies) inputs.set_load_at(t, scene_.load);
+    return scene_;
   }
 
  private:
   void set_ground() { scene_.ground = is_below(Event::lost_contact) ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES; }
 
-  WheelScene scene_ = {};  // its load: that at the origin of the inputs
+  mutable WheelScene scene_ = {};  // its load: that at the instant asked for last
 };
 
 // What the caller has set since the last step. It is in force from the next step on; a reading shows it at once.

@@ -88,6 +88,7 @@ void set_experiment(Wheel& w, double start_time, double stop_time, double tolera
 }
 
 void set(Wheel& w, unsigned variable, double value, int order) {
+  if (variable >= stored_count) return set_state(w, variable, value);
   Run& run = w.run;
   if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);

@@ -106,7 +106,8 @@ Reading read_now(const Wheel& wheel);
 void reset(Wheel& wheel);
 // stop_time: infinite for none. tolerance <= 0: the default one.
 void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
-// Parameters and inputs, with their derivatives, which are checked as a whole by prepare.
+// Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange a
+// state too.
 void set(Wheel& wheel, unsigned variable, double value, int order = 0);
 // The parameters are checked from here on.
 void begin_initialization(Wheel& wheel);
