@@ -31,18 +31,15 @@ auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* 
   };
 }
 
-auto enter(Phase mode) {
-  return [=](Instance& i) { wheel::enter(i.change(), mode); };
-}
-
 }  // namespace
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return guarded(c, legality::while_integrating, enter(Phase::event_mode));
+  return guarded(c, legality::while_integrating, [](Instance& i) { wheel::enter(i.change(), Phase::event_mode); });
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return guarded(c, legality::enter_continuous_time, enter(Phase::continuous_time));
+  return guarded(c, legality::enter_continuous_time,
+                 [](Instance& i) { wheel::enter(i.change(), Phase::continuous_time); });
 }
 
 // One pass is enough: the law that is decided holds.

@@ -46,10 +46,6 @@ bool continues(const double* c, double tau, double rounding, const double* next)
   return true;
 }
 
-[[gnu::noinline]] void add_guide(const double (*guide)[max_order + 1], double tau, WheelLoad& load) {
-  for (int i = 0; i < 2; ++i) load.guide[i] = rate_at(guide[i], tau);
-}
-
 }  // namespace
 
 Span span_of(const double (&c)[max_order + 1], double tau) {
@@ -78,8 +74,7 @@ double* load_entry(WheelLoad& load, int input) {
 [[gnu::noinline]] void Inputs::set_load_at(double t, WheelLoad& load) const {
   const double tau = t - origin;
   for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(c[i], tau);
-  load.guide[0] = load.guide[1] = 0;
-  if (guides) add_guide(c + guide_input, tau, load);
+  for (int i = 0; i < 2; ++i) load.guide[i] = guides ? rate_at(c[guide_input + i], tau) : 0;
   if (!(load.brake > 0)) load.brake = 0;
 }
 

@@ -3,9 +3,7 @@
 #include "motion.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "constant.hpp"
@@ -23,11 +21,6 @@ CONSTANT(long long, most_work, 1000000, "internal steps", "of one call, however 
 CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a new start, the short steps after it");
 CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
 CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");
-
-bool is_known(const Wheel& w, double t) {
-  if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
-  return w.run.phase == Phase::unfolded && t <= w.orbit.until();
-}
 
 // Whether what was set since the last step differs from what is in force.
 bool has_changed(const Wheel& w) {
@@ -54,7 +47,7 @@ Result start_solver(Wheel& w) {
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
       again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
-  return {.outcome = done ? Outcome::stepped : Outcome::failed};
+  return {done ? Outcome::stepped : Outcome::failed};
 }
 
 // Stage 1: what was set since the last step is in force.
@@ -154,16 +147,15 @@ Result step_to(Wheel& w, double t) {
   const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work)
-      return {.outcome = Outcome::failed,
-              .failure =
-                  "one call may take no more internal steps: a coupling diverges, a force, a brake or a "
-                  "regularized law is extreme, or the communication step is too long"};
+      return {Outcome::failed, Event::none,
+              "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
+              "extreme, or the communication step is too long"};
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) {
-      if (!is_about_to_jam(w)) return {.outcome = outcome};
+      if (!is_about_to_jam(w)) return {outcome};
       move_to(w, solver.known_until());
-      return {.outcome = Outcome::event, .ending = Event::jams};
+      return {Outcome::event, Event::jams};
     }
     if (w.run.in_force.inputs.loaded) look_at_grip(w, t);
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
@@ -173,7 +165,7 @@ Result step_to(Wheel& w, double t) {
     move_to(w, solver.known_until());
     update_state(w);
     const auto event = static_cast<Event>(solver.event());
-    if (ends_run(event_row(event), w.setup)) return {.outcome = outcome, .ending = event};
+    if (ends_run(event_row(event), w.setup)) return {outcome, event};
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
     else if (const Result result = start_solver(w); result.outcome == Outcome::failed)
@@ -187,9 +179,9 @@ Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return {};
   if (!w.orbit.ends())
-    return {.outcome = Outcome::failed, .failure = "psi or phi would turn so far that the angle has too few digits"};
+    return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
   move_to(w, w.orbit.until());
-  return {.outcome = Outcome::event, .ending = static_cast<Event>(w.orbit.event())};
+  return {Outcome::event, static_cast<Event>(w.orbit.event())};
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
@@ -230,20 +222,11 @@ Outcome advance_by_stages(Wheel& w, double t) {
   return result.outcome;
 }
 
-// Whether a derivative of an input is not zero: by bits, so that steps with constant inputs lose nothing.
-bool varies(const Polynomials& inputs) {
-  std::uint64_t bits = 0;
-  for (const auto& c : inputs)
-    for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
-  return bits << 1U != 0;
-}
-
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
   const bool may_vary = w.run.news != News::none || w.run.phase == Phase::at_start;
-  if (!may_vary || !varies(w.demand.inputs)) return {};
-  for (unsigned i = 0; i < inputs_count; ++i) {
+  for (unsigned i = 0; may_vary && i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
     const Span span = span_of(c, h);
@@ -256,7 +239,9 @@ Excess excess_of(const Wheel& w, double h) {
 }
 
 Outcome advance(Wheel& w, double t) {
-  if (w.run.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
+  const Phase phase = w.run.phase;
+  const bool known = phase == Phase::stepping ? w.solver.reaches(t) : phase == Phase::unfolded && t <= w.orbit.until();
+  if (w.run.news != News::none || !known) return advance_by_stages(w, t);
   arrive(w, t);
   return Outcome::stepped;
 }

@@ -69,9 +69,7 @@ void visit(support::Archive& archive, Record& record) {
 // Completes a run that was read by what follows from its demand. False where the demand describes no wheel, or the run
 // names an equation or an event that does not exist.
 bool complete(Record& record) {
-  const Demand& demand = record.demand;
-  Setup& setup = record.setup;
-  Run& run = record.run;
+  auto& [demand, setup, run] = record;
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
   const bool ended = run.ended_by != Event::none;
   if (ended ? !event_row(run.ended_by).ending : run.phase == Phase::ended) return false;
