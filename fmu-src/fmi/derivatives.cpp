@@ -49,7 +49,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
                      "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, and those of a "
                      "carrier's rate need guided = true and co-simulation.",
                      orders[k], values[k], wheel::row_of(inputs[k]).name, wheel::max_order);
-    for (std::size_t k = 0; k < n; ++k) wheel::set(i.wheel, inputs[k], values[k], orders[k]);
+    for (std::size_t k = 0; k < n; ++k) wheel::set(i.change(), inputs[k], values[k], orders[k]);
     return fmi2OK;
   });
 }
@@ -84,7 +84,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
       const unsigned variable = wheel::variable_of(knowns[k]);
       if (!wheel::add_slopes(i.wheel, variable, seeds[k], {unknowns}, n_unknowns, values))
         return i.log(Topic::error, "%s: no valid initial values near %s = %s for a derivative.",
-                     wheel::row_of(variable).name, wheel::value_of(i.wheel, variable));
+                     wheel::row_of(variable).name, i.value_of(variable));
     }
     if (std::all_of(values, values + n_unknowns, [](double value) { return std::isfinite(value); })) return fmi2OK;
     return i.log(Topic::discard, "%s: a derivative is not finite here.");

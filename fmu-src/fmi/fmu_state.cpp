@@ -49,16 +49,16 @@ auto with_state(fmi2FMUstate state, bool complete, Body body) {
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
   return guarded(c, legality::always, [=](Instance& i) {
     if (!state) return null_pointer;
-    Snapshot* snapshot = allocate(state, wheel::state_size(i.wheel));
+    Snapshot* snapshot = allocate(state, wheel::state_size(i.change()));
     if (!snapshot) return no_memory;
-    wheel::save_state(i.wheel, snapshot->bytes());
+    wheel::save_state(i.change(), snapshot->bytes());
     return no_fault;
   });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
   const auto load = [](Instance& i, Snapshot& snapshot) {
-    return wheel::load_state(i.wheel, snapshot.bytes(), snapshot.size);
+    return wheel::load_state(i.change(), snapshot.bytes(), snapshot.size);
   };
   return guarded(c, legality::always, with_state(state, true, load));
 }

@@ -45,7 +45,7 @@ const char* name_of_state(Phase phase) {
 }  // namespace
 
 Instance::Instance(const fmi2CallbackFunctions* callbacks, wheel::Kind kind)
-    : Handle{.mark = kind_mark}, wheel(*this, kind), callbacks_(callbacks ? *callbacks : fmi2CallbackFunctions{}) {}
+    : Handle{.mark = kind_mark}, callbacks_(callbacks ? *callbacks : fmi2CallbackFunctions{}), wheel_(*this, kind) {}
 
 void Instance::take(Topic topic, const char* message) const {
   char escaped[2 * longest];
@@ -84,10 +84,19 @@ fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::
   std::size_t computed = 0;
   while (computed < count && listed[computed] < wheel::stored_count) ++computed;
   if (computed == count || has_state(wheel.run.phase)) return fmi2OK;
-  if (!wheel::is_prepared(wheel)) return fmi2Discard;
+  if (!wheel::is_prepared(change())) return fmi2Discard;
   const bool readable = has_state(wheel.run.phase);
   const char* const name = wheel::row_of(listed[computed]).name;
   return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;
+}
+
+double Instance::value_of(unsigned variable) {
+  if (variable < wheel::stored_count) return wheel.demand.value(variable);
+  if (!reading_) {
+    reading_ = wheel::read_now(wheel);
+    wheel::warn_of_jam(wheel, *reading_);
+  }
+  return wheel::row_of(variable).read(*reading_);
 }
 
 }  // namespace fmi

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdlib>
+#include <optional>
 #include <type_traits>
 
 #include "arithmetic.hpp"
@@ -79,7 +80,15 @@ struct Instance final : Handle, wheel::Reporter {
   // Logs that a function is not legal in the present state, or belongs to the other kind of instance.
   fmi2Status refuse(const Rule& rule);
 
-  wheel::Wheel wheel;
+  const wheel::Wheel& wheel = wheel_;
+  // The only way to change the wheel: what was read of it is dropped.
+  wheel::Wheel& change() {
+    reading_.reset();
+    return wheel_;
+  }
+  // Parameters and inputs as they were set; calculated variables at the instant reached, where what was set takes
+  // effect at once.
+  double value_of(unsigned variable);
   // The function that is under way, for messages; null: none is. The logger must not call back into the instance.
   const char* called = nullptr;
   unsigned logged_topics = 0;
@@ -92,6 +101,8 @@ struct Instance final : Handle, wheel::Reporter {
 
   const fmi2CallbackFunctions callbacks_;  // a copy: the master's pointer need not live longer than the creation
   const char* name_ = nullptr;             // behind the instance
+  wheel::Wheel wheel_;
+  std::optional<wheel::Reading> reading_;  // of the instant reached
 };
 
 inline constexpr const char* no_fault = nullptr;
@@ -104,7 +115,6 @@ fmi2Status guarded(fmi2Component component, const Rule& rule, Body&& body, const
   auto* const instance = handle_of<Instance>(component);
   if (!instance || instance->called) return fmi2Error;
   instance->called = name;
-  if (!rule.reads) instance->wheel.reading.reset();
   instance->arithmetic.take();
   fmi2Status status = fmi2OK;
   if (!rule.allows(instance->wheel.demand.kind, instance->wheel.run.phase))

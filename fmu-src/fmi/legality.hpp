@@ -17,7 +17,6 @@ constexpr unsigned bits(Each... each) {
 // Where a function is legal: one bit for each phase, and one for each kind of instance.
 struct Rule {
   unsigned phases, kinds;
-  bool reads = false;  // variables alone: what was read of the wheel stays true
 
   constexpr bool is_for(Kind kind) const { return (kinds & bits(kind)) != 0; }
   constexpr bool allows(Kind kind, Phase phase) const { return is_for(kind) && (phases & bits(phase)) != 0; }
@@ -49,10 +48,10 @@ inline constexpr Rule always = {any_state, both};  // logging, reset, FMU states
 inline constexpr Rule before_initialization = {instantiated, both};
 inline constexpr Rule exit_initialization = {initialization, both};
 inline constexpr Rule terminate = {running | step_failed, both};
-inline constexpr Rule get_values = {initialization | running | stopped, both, true};
+inline constexpr Rule get_values = {initialization | running | stopped, both};
 inline constexpr Rule set_values = {instantiated | initialization | running, both};
 inline constexpr Rule set_input_derivatives = {instantiated | initialization | step_complete, co_simulation};
-inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simulation, true};
+inline constexpr Rule get_output_derivatives = {step_complete | stopped, co_simulation};
 inline constexpr Rule do_step = {step_complete, co_simulation};
 inline constexpr Rule cancel_step = {0, co_simulation};
 inline constexpr Rule get_status = {step_complete | step_failed | terminated, co_simulation};

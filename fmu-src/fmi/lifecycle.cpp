@@ -79,25 +79,24 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
                    "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
                    "positive.",
                    start, stop, tolerance);
-    wheel::set_experiment(i.wheel, start, has_stop ? stop : solver::never, has_tolerance ? tolerance : 0);
+    wheel::set_experiment(i.change(), start, has_stop ? stop : solver::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return guarded(c, legality::before_initialization,
-                 [](Instance& i) { i.wheel.run.phase = wheel::Phase::initializing; });
+  return guarded(c, legality::before_initialization, [](Instance& i) { wheel::begin_initialization(i.change()); });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return guarded(c, legality::exit_initialization,
-                 [](Instance& i) { return wheel::start(i.wheel) ? fmi2OK : fmi2Error; });
+                 [](Instance& i) { return wheel::start(i.change()) ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-  return guarded(c, legality::terminate, [](Instance& i) { wheel::close(i.wheel); });
+  return guarded(c, legality::terminate, [](Instance& i) { wheel::close(i.change()); });
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-  return guarded(c, legality::always, [](Instance& i) { wheel::reset(i.wheel); });
+  return guarded(c, legality::always, [](Instance& i) { wheel::reset(i.change()); });
 }

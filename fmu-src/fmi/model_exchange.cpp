@@ -5,7 +5,7 @@
 #include "exchange.hpp"
 #include "instance.hpp"
 
-using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic, wheel::Wheel;
+using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic;
 namespace legality = fmi::legality;
 
 namespace {
@@ -20,31 +20,26 @@ bool are_finite(const double* values, std::size_t count) {
 }
 
 // Reads as many numbers as are needed, in initialization mode from the start values; Discard where they are not finite.
-auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* what, void (*read)(Wheel&, double*)) {
+template <class Read>
+auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* what, Read read) {
   return [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
-    if (!wheel::is_prepared(i.wheel) || !has_state(i.wheel.run.phase)) return fmi2Discard;
-    read(i.wheel, values);
+    if (!wheel::is_prepared(i.change()) || !has_state(i.wheel.run.phase)) return fmi2Discard;
+    read(i.change(), values);
     if (are_finite(values, count)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.wheel.time(), what);
-  };
-}
-
-// A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
-auto enter(Phase mode) {
-  return [=](Instance& i) {
-    if (i.wheel.run.phase != Phase::ended) i.wheel.run.phase = mode;
   };
 }
 
 }  // namespace
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return guarded(c, legality::while_integrating, enter(Phase::event_mode));
+  return guarded(c, legality::while_integrating, [](Instance& i) { wheel::enter(i.change(), Phase::event_mode); });
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return guarded(c, legality::enter_continuous_time, enter(Phase::continuous_time));
+  return guarded(c, legality::enter_continuous_time,
+                 [](Instance& i) { wheel::enter(i.change(), Phase::continuous_time); });
 }
 
 // One pass is enough: the law that is decided holds.
@@ -52,7 +47,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   return guarded(c, legality::new_discrete_states, [=](Instance& i) {
     if (!info) return "the event info is a null pointer";
     *info = {};
-    info->valuesOfContinuousStatesChanged = wheel::decide(i.wheel) ? fmi2True : fmi2False;
+    info->valuesOfContinuousStatesChanged = wheel::decide(i.change()) ? fmi2True : fmi2False;
     info->terminateSimulation = i.wheel.has_ended() ? fmi2True : fmi2False;
     return no_fault;
   });
@@ -62,7 +57,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
                                        fmi2Boolean* terminate) {
   return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!enter_event_mode || !terminate) return "a result is a null pointer";
-    *enter_event_mode = wheel::has_event(i.wheel) ? fmi2True : fmi2False;
+    *enter_event_mode = wheel::has_event(i.change()) ? fmi2True : fmi2False;
     *terminate = fmi2False;
     return no_fault;
   });
@@ -71,8 +66,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
   return guarded(c, legality::set_time, [=](Instance& i) {
     if (!std::isfinite(t)) return i.log(Topic::error, "%s: %s s: the time must be finite.", t);
-    wheel::Run& run = i.wheel.run;
-    run.t = run.y_time = t - i.wheel.demand.start_time;
+    wheel::set_time(i.change(), t);
     return fmi2OK;
   });
 }
@@ -81,7 +75,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
   return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
-    wheel::set_states(i.wheel, x);
+    wheel::set_states(i.change(), x);
     return fmi2OK;
   });
 }

@@ -35,7 +35,6 @@ bool check_step(const Instance& i, double t, double h) {
 }
 
 bool check_inputs(const Instance& i, double h) {
-  if (!wheel::may_vary(i.wheel)) return true;
   const wheel::Excess excess = wheel::excess_of(i.wheel, h);
   const wheel::Limit& limit = excess.limit;
   return i.check(!limit.relation, "%s by %s s: %s would become %s: it must be %s %s.", h,
@@ -63,7 +62,7 @@ auto get_status(const fmi2StatusKind& asked, long long known_kind, Value* value,
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return guarded(c, legality::do_step, [=](Instance& i) {
     if (!check_step(i, t, h) || !check_inputs(i, h)) return fmi2Error;
-    const solver::Outcome outcome = wheel::advance(i.wheel, t + h - i.wheel.demand.start_time);
+    const solver::Outcome outcome = wheel::advance(i.change(), t + h - i.wheel.demand.start_time);
     if (outcome == solver::Outcome::failed) return fmi2Error;
     return outcome == solver::Outcome::event ? fmi2Discard : fmi2OK;
   });

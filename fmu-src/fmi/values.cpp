@@ -35,7 +35,7 @@ auto get(Type type, const fmi2ValueReference variables[], std::size_t count, Val
     if (!check_variables(i, type, variables, count, values)) return fmi2Error;
     const fmi2Status status = i.prepare_reading(variables, count);
     for (std::size_t k = 0; k < count && status == fmi2OK; ++k)
-      values[k] = represented<Value>(wheel::value_of(i.wheel, wheel::variable_of(variables[k])));
+      values[k] = represented<Value>(i.value_of(wheel::variable_of(variables[k])));
     return status;
   };
 }
@@ -55,7 +55,7 @@ bool check_settable(const Instance& i, unsigned variable) {
 bool check_value(Instance& i, unsigned variable, double value) {
   if (!is_running(i.wheel.run.phase)) return true;
   const auto refuse = [&](const char* reason, auto... limit) {
-    const double kept = wheel::value_of(i.wheel, variable);
+    const double kept = i.value_of(variable);
     i.log(Topic::discard, reason, wheel::row_of(variable).name, value, limit..., kept);
     return false;
   };
@@ -74,7 +74,7 @@ bool check_value(Instance& i, unsigned variable, double value) {
 double taken(Instance& i, unsigned variable, double value) {
   constexpr double little = 1e-6;  // N m, or of the capacity
   if (variable != wheel::variable::M_brake || !(value < 0)) return value;
-  return value >= -little * std::fmax(1, wheel::value_of(i.wheel, variable)) ? 0 : value;
+  return value >= -little * std::fmax(1, i.value_of(variable)) ? 0 : value;
 }
 
 template <class Value>
@@ -87,7 +87,7 @@ auto set(Type type, const fmi2ValueReference variables[], std::size_t count, con
     const auto value = [&](std::size_t k) { return taken(i, listed[k], static_cast<double>(values[k])); };
     for (std::size_t k = 0; k < count; ++k)
       if (!check_value(i, listed[k], value(k))) return fmi2Discard;
-    for (std::size_t k = 0; k < count; ++k) wheel::set(i.wheel, listed[k], value(k));
+    for (std::size_t k = 0; k < count; ++k) wheel::set(i.change(), listed[k], value(k));
     return fmi2OK;
   };
 }

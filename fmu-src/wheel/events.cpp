@@ -11,43 +11,39 @@ namespace wheel {
 namespace {
 
 bool can_change_layer(const Setup& setup, const InForce& now) {
-  return setup.has_layer() && now.scene.friction.kind != WHEEL_FRICTIONLESS;
+  return setup.has_layer() && now.law().kind != WHEEL_FRICTIONLESS;
 }
 
 // (y) => how far the spin is from the edge of the layer
 double way_to_layer(const Setup& setup, const InForce& now, double, const double* y) {
   const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
-  const double inside = edge - std::fabs(omega_z), outside = now.scene.friction.sigma * omega_z - edge;
-  return (now.scene.friction.kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
+  const double inside = edge - std::fabs(omega_z), outside = now.law().sigma * omega_z - edge;
+  return (now.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 
 // In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
-  const WheelFrictionKind law = now.scene.friction.kind;
+  const WheelFrictionKind law = now.law().kind;
   if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
-}
-
-// (t, y) => capacity that is not needed to hold the wheel
-[[gnu::noinline]] double left_while_held(const Setup& setup, const InForce& now, double t, const double* y) {
-  return hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
 }
 
 // (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
 // that holding leaves; without friction, the brake that asks for a law
 double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  const WheelFriction& law = now.scene.friction;
+  const WheelFriction& law = now.law();
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin) : left_while_held(setup, now, t, y);
-  return -now.scene.load.brake / setup.moment_scale;
+    return std::fabs(spin) > spin_error ? -std::fabs(spin)
+                                        : hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
+  return -now.scene_at(t).load.brake / setup.moment_scale;
 }
 
-int spin_alone(const InForce& now) { return now.scene.friction.kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
+int spin_alone(const InForce& now) { return now.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
-  const WheelFrictionKind law = now.scene.friction.kind;
+  const WheelFrictionKind law = now.law().kind;
   if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
   decide_law(setup, t, y, now, law == WHEEL_HELD);
 }
@@ -59,7 +55,7 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   CONSTANT(double, near, 1e3, "least slips", "farther from its end a slip cannot fall to it before the next sample");
   double least = least_slip(setup, t);
   if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
-    const Rates rates = now.at(t, [&](const WheelScene& scene) { return rates_of(setup, scene, y); });
+    const Rates rates = rates_of(setup, now.scene_at(t), y);
     const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
@@ -118,7 +114,7 @@ constexpr EventRow event_rows[] = {
      .exchanged = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
-     .limit = [](const InForce& now) { return now.scene.mu_slide; }},
+     .limit = [](const InForce& now) { return now.mu_slide(); }},
     {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = height_of,
@@ -149,7 +145,7 @@ double signed_margin(const EventRow& row, const InForce& now, double value) {
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
   if (row.observed) now.cross(row.event);
-  const bool acts = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.slides();
+  const bool acts = now.law().kind != WHEEL_FRICTIONLESS || now.slides();
   return row.follow || (row.event == Event::lost_contact && acts) ? Consequence::bends : Consequence::goes_on;
 }
 

@@ -36,7 +36,7 @@ struct EventRow {
 
 inline constexpr int row_count = event_count - 1;
 extern const EventRow event_rows[row_count];  // in the order of Event
-inline const EventRow& row_of(Event event) { return event_rows[static_cast<int>(event) - 1]; }
+inline const EventRow& event_row(Event event) { return event_rows[static_cast<int>(event) - 1]; }
 inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends && row.ends(setup); }
 // Logged where it first occurs in a run.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }

@@ -15,21 +15,27 @@ int place_in_x(unsigned variable);
 int place_in_y(int in_x);
 
 // What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
-// for another law at once. Writes run.in_force, run.transitions and demand.news.
+// for another law at once.
 void act_at_once(Wheel& wheel);
+// To event mode or continuous-time mode.
+void enter(Wheel& wheel, Phase mode);
+// (time: s, the caller's)
+void set_time(Wheel& wheel, double time);
+void set_states(Wheel& wheel, const double* x);
+// Of a variable that is a state, by itself: the law of friction is decided for it.
+void set_state(Wheel& wheel, unsigned variable, double value);
 
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins
-// are those of the flat wheel, which are finite. Rates, margins and events write run.counted.
-void states(Wheel& wheel, double* x);
-void set_states(Wheel& wheel, const double* x);
-void nominals(Wheel& wheel, double* x);
+// are those of the flat wheel, which are finite. Evaluations are counted.
+void states(const Wheel& wheel, double* x);
+void nominals(const Wheel& wheel, double* x);
 void derivatives(Wheel& wheel, double* x_dot);
 void indicators(Wheel& wheel, double* z);
 bool has_event(Wheel& wheel);
 
 // Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
 // from a step that they took under the old law, unless the states are called new. Where the model ends here, the run
-// does. Writes run.
+// does.
 bool decide(Wheel& wheel);
 
 // Whether a run can begin: model exchange has no way to report an end at the start. Else a message.

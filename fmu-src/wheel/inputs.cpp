@@ -46,10 +46,6 @@ bool continues(const double* c, double tau, double rounding, const double* next)
   return true;
 }
 
-[[gnu::noinline]] void add_guide(const double (*guide)[max_order + 1], double tau, WheelLoad& load) {
-  for (int i = 0; i < 2; ++i) load.guide[i] = rate_at(guide[i], tau);
-}
-
 }  // namespace
 
 Span span_of(const double (&c)[max_order + 1], double tau) {
@@ -75,18 +71,19 @@ double* load_entry(WheelLoad& load, int input) {
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
-void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load) {
-  for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(inputs[i], tau);
-  load.guide[0] = load.guide[1] = 0;
-  if (guides) add_guide(inputs + guide_input, tau, load);
+[[gnu::noinline]] void Inputs::set_load_at(double t, WheelLoad& load) const {
+  const double tau = t - origin;
+  for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(c[i], tau);
+  for (int i = 0; i < 2; ++i) load.guide[i] = guides ? rate_at(c[guide_input + i], tau) : 0;
   if (!(load.brake > 0)) load.brake = 0;
 }
 
-WheelLoad load_rate_of(const Polynomials& inputs, double tau) {
+WheelLoad Inputs::load_rate_at(double t) const {
+  const double tau = t - origin;
   WheelLoad rate = {};
-  for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(inputs[i], tau);
-  for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * inputs[i][2] + tau * 6 * inputs[i][3];
-  if (value_at(inputs[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
+  for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(c[i], tau);
+  for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * c[i][2] + tau * 6 * c[i][3];
+  if (value_at(c[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
   return rate;
 }
 

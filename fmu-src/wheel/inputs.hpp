@@ -20,11 +20,6 @@ using Polynomials = double[inputs_count][max_order + 1];
 // (inputs) => whether a rate of the carrier or one of its derivatives is not zero
 bool is_guiding(const Polynomials& inputs);
 
-// (inputs, tau: s from the origin) => load, and its rate: a brake at zero can only be put on. `guides`: the carrier's
-// inputs act.
-void set_load(const Polynomials& inputs, bool guides, double tau, WheelLoad& load);
-WheelLoad load_rate_of(const Polynomials& inputs, double tau = 0);
-
 // (polynomial, tau: s) => least and largest value from its origin to tau, infinite where a value overflows
 struct Span {
   double least, largest;
@@ -45,7 +40,9 @@ struct Inputs {
   // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
-  void set_load_at(double t, WheelLoad& load) const { set_load(c, guides, t - origin, load); }
+  void set_load_at(double t, WheelLoad& load) const;
+  // A brake at zero can only be put on.
+  WheelLoad load_rate_at(double t) const;
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;
   // (t_lo, t_hi) => instants strictly between them, ascending, at which an input has an extreme; returns their number

@@ -31,7 +31,7 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
 // Whether the laws of a wheel that starts to slide are tried one by one, held first: without spin, with rolling
 // friction or brake.
 bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
-  const bool some = now.scene.wheel.s != 0 || now.inputs.braked;
+  const bool some = now.road.s != 0 || now.inputs.braked;
   return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }
 
@@ -50,25 +50,25 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
 }  // namespace
 
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
-  set_road_and_inputs(setup, road_asked(demand), t, demand.inputs, now);
-  if (setup.steered()) set_guide_rates(setup, demand, now.scene, false, y);
+  now.take_over(setup, road_asked(demand), t, demand.inputs);
+  if (setup.steered()) set_guide_rates(setup, demand, now.scene_at(t), false, y);
   decide_contact(setup, t, y, now);
 }
 
-void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& now) {
-  now.road = road;
-  now.scene.wheel = setup.scene.wheel;
-  now.scene.wheel.s = road.s;
-  if (road.slope != 0) wheel_set_slope(&now.scene.wheel, setup.scene.wheel.g_n, road.slope, road.slope_direction);
-  now.scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
-  now.scene.ground = now.pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
-  now.scene.guided = setup.scene.guided;
-  now.inputs.take_over(t, inputs);
-  set_load(inputs, now.inputs.guides, 0, now.scene.load);
+void InForce::take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials) {
+  road = asked;
+  scene_.wheel = setup.scene.wheel;
+  scene_.wheel.s = road.s;
+  if (road.slope != 0) wheel_set_slope(&scene_.wheel, setup.scene.wheel.g_n, road.slope, road.slope_direction);
+  scene_.mu_slide = std::fmin(road.mu_slide, road.mu_max);
+  scene_.guided = setup.scene.guided;
+  set_ground();
+  inputs.take_over(t, polynomials);
+  inputs.set_load_at(t, scene_.load);
 }
 
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
-  const WheelFormulation& f = formulation_of(setup, scene);
+  const WheelFormulation& f = formulation_of(setup, scene.contact);
   const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
   if (psi_dot == 0 && theta_dot == 0 && y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0) return;
   WheelKinematics k;
@@ -92,25 +92,25 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   const bool slips_on = now.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
   if (now.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
-  now.scene.contact = WHEEL_GRIPS;
+  now.set_contact(WHEEL_GRIPS);
   decide_law(setup, t, y, now);
   if (grip_left(setup, now, t, y) >= 0) return;
-  const WheelScene scene = now.scene_at(t);
+  const WheelScene& scene = now.scene_at(t);
   const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(scene, y).N < 0;
   if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
-  const WheelScene scene = now.scene_at(t);
-  now.scene.friction =
-      released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y);
+  const WheelScene& scene = now.scene_at(t);
+  now.set_law(released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y));
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
-  now.scene.contact = WHEEL_SLIDES;
+  now.set_contact(WHEEL_SLIDES);
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
-    scene.friction = now.scene.friction = law;
+    now.set_law(law);
+    scene.friction = law;
     y[WHEEL_SLIP] = 2 * least_slip(setup, t);
     y[WHEEL_CHI] = first_direction(scene, y);
   };
@@ -140,7 +140,7 @@ double least_slip(const Setup& setup, double t) {
 double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
   CONSTANT(double, rounding, 1e-12, "1", "of mu_max N");
   CONSTANT(double, rounding_of_zero, 1e-15, "weights", "of a tangential force of zero");
-  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
+  const WheelDynamics dynamics = dynamics_of(setup, now.scene_at(t), y);
   const double* lambda = dynamics.lambda;
   const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
@@ -148,11 +148,12 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
-Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
+[[gnu::noinline]] Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y) {
   CONSTANT(double, rounding_of_capacity, 1e-12, "1", "where rounding alone decides, the wheel stays held");
   CONSTANT(double, rounding_of_tau, 1e-13, "weight times length", "the same without a capacity");
-  scene.friction = held;
-  const WheelDynamics dynamics = dynamics_of(setup, scene, y);
+  WheelScene holding = scene;
+  holding.friction = held;
+  const WheelDynamics dynamics = dynamics_of(setup, holding, y);
   const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};

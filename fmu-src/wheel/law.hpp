@@ -11,9 +11,6 @@ namespace wheel {
 // friction. In y it writes the slip, and what a jump of the carrier's rates changes.
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
-// (road, t, inputs) => in_force: both, and what follows from them alone. A mu_max set below mu_slide counts for both.
-void set_road_and_inputs(const Setup& setup, const Road& road, double t, const Polynomials& inputs, InForce& in_force);
-
 // (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
 // it had always turned so.
 void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
@@ -54,7 +51,7 @@ inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.ki
 struct Hold {
   double tau, reserve;
 };
-Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
+Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y);
 
 // rad/s, half the width of the layer of a regularized law (Setup::has_layer).
 CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");

@@ -20,7 +20,7 @@ double shown_time(const Wheel& wheel, double t) {
 
 Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
-  const EventRow& row = row_of(event);
+  const EventRow& row = event_row(event);
   const InForce before = run.in_force;
   const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) observe(wheel, event, run.t);
@@ -30,14 +30,14 @@ Consequence pass_event(Wheel& wheel, Event event) {
 
 void observe(Wheel& wheel, Event event, double t) {
   bool& observed = wheel.run.observed[static_cast<int>(event)];
-  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), row_of(event).observed);
+  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), event_row(event).observed);
   observed = true;
 }
 
 void log_changes(Wheel& wheel, const InForce& before, Event by) {
   Run& run = wheel.run;
   const double t = shown_time(wheel, run.t);
-  const WheelFriction &old = before.scene.friction, &law = run.in_force.scene.friction;
+  const WheelFriction &old = before.law(), &law = run.in_force.law();
   const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
   if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
     ++run.transitions;
@@ -64,8 +64,7 @@ void look_at_grip(Wheel& wheel, double t) {
   if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
   double y[max_states];
   wheel.solver.read(t, y);
-  const WheelDynamics dynamics = now.at(t, [&](const WheelScene& scene) { return dynamics_of(setup, scene, y); });
-  const double mu = wheel_required_friction(dynamics.lambda);
+  const double mu = wheel_required_friction(dynamics_of(setup, now.scene_at(t), y).lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
   wheel.run.grip_due = exceeds ? solver::never : t + setup.time_scale / looks;
   if (exceeds)
@@ -74,10 +73,10 @@ void look_at_grip(Wheel& wheel, double t) {
                        shown_time(wheel, t), Digits{mu, 3});
 }
 
-void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y) {
-  InForce now = wheel.run.in_force;
-  now.scene = ahead;
-  if (now.slides() && margin_of(row_of(Event::jams), wheel.setup, now, wheel.run.t, y) < 0)
+void warn_of_jam(const Wheel& wheel, const Reading& reading) {
+  const InForce& now = reading.in_force;
+  if (wheel.run.news == News::none || !now.slides()) return;
+  if (margin_of(event_row(Event::jams), wheel.setup, now, reading.t, reading.y) < 0)
     wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
                        ending_of(now, Event::jams).text);
 }
@@ -104,7 +103,7 @@ void log_ending(Wheel& wheel, Event event) {
 Ending ending_of(const InForce& now, Event event) {
   Ending ending;
   NumberText limit;
-  const EventRow& row = row_of(event);
+  const EventRow& row = event_row(event);
   std::snprintf(ending.text, sizeof ending.text, "%s%s%s", row.ending, row.limit ? " = " : "",
                 row.limit ? limit.of({row.limit(now)}) : "");
   return ending;

@@ -5,8 +5,7 @@
 
 namespace wheel {
 
-// The run stands at an event that does not end it: what follows is in force, counted and logged. Writes run.in_force,
-// run.y and the counts.
+// The run stands at an event that does not end it: what follows is in force, counted and logged.
 solver::Consequence pass_event(Wheel& wheel, Event event);
 // An observed event at t, s, clock of the run: the first of a run is logged.
 void observe(Wheel& wheel, Event event, double t);
@@ -15,13 +14,12 @@ void observe(Wheel& wheel, Event event, double t);
 void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
 // Once per run, where a loaded wheel on a road without a limit is found to need a friction coefficient above 1, at t at
 // the latest, s, clock of the run. Looks a few times in the wheel's time scale, so that it costs nothing noticeable.
-// Writes run.grip_due.
 void look_at_grip(Wheel& wheel, double t);
-// Where a road that was set, with the scene and y of a reading, makes the wheel jam: the reading has no force that
-// satisfies the equations, and the next step ends the run.
-void warn_of_jam(const Wheel& wheel, const WheelScene& ahead, const double* y);
+// Where a road that was set makes the wheel jam: the reading has no force that satisfies the equations, and the next
+// step ends the run.
+void warn_of_jam(const Wheel& wheel, const Reading& reading);
 
-// Of an ending; of very many, as of a search that goes back and tries again, the first ones alone. Writes endings.
+// Of an ending; of very many, as of a search that goes back and tries again, the first ones alone.
 void log_ending(Wheel& wheel, Event event);
 // What ended a run, to stand behind "the wheel", with its limit.
 struct Ending {

@@ -1,20 +1,9 @@
 // How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
 // stages. Times in s on the clock of the run.
-//
-//   stage           writes, besides the solution
-//   apply_demand    run: in_force, y (a slip, a jump of the carrier's rates), phase (an orbit is left), last_change,
-//                   transitions, counted; demand.news
-//   set_in_motion   run: phase, counted
-//   proceed         run: grip_due; t, y, in_force, observed, transitions, at events that do not end the run
-//   arrive          run: t, observed; demand: inputs and news, where an input varies
-//   end             run: t, y, phase, ended_by, counted
-//   fail            run: as before the step, but for the phase; demand.news: as before
 #include "motion.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "constant.hpp"
@@ -33,11 +22,6 @@ CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a 
 CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
 CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");
 
-bool is_known(const Wheel& w, double t) {
-  if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
-  return w.run.phase == Phase::unfolded && t <= w.orbit.until();
-}
-
 // Whether what was set since the last step differs from what is in force.
 bool has_changed(const Wheel& w) {
   const InForce& now = w.run.in_force;
@@ -46,9 +30,16 @@ bool has_changed(const Wheel& w) {
   return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
+// What a stage has come to.
+struct Result {
+  Outcome outcome = Outcome::stepped;
+  Event ending = Event::none;     // the event that ends the run, which stands at it
+  const char* failure = nullptr;  // its reason; null: see the solver
+};
+
 // From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
 // before, anew, and goes on counting.
-Outcome start_solver(Wheel& w) {
+Result start_solver(Wheel& w) {
   solver::Solver& solver = w.solver;
   const bool again = w.run.phase == Phase::stepping;
   w.run.phase = Phase::stepping;
@@ -56,27 +47,27 @@ Outcome start_solver(Wheel& w) {
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
       again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
-  return done ? Outcome::stepped : Outcome::failed;
+  return {done ? Outcome::stepped : Outcome::failed};
 }
 
 // Stage 1: what was set since the last step is in force.
-Outcome apply_demand(Wheel& w) {
+Result apply_demand(Wheel& w) {
   Run& run = w.run;
-  const bool changed = w.demand.news != News::none && has_changed(w);
-  w.demand.news = News::none;
-  if (!changed) return Outcome::stepped;
+  const bool changed = run.news != News::none && has_changed(w);
+  run.news = News::none;
+  if (!changed) return {};
   const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
   enforce(w.setup, w.demand, run.t, run.y, run.in_force);
   log_changes(w, before);
-  if (run.phase == Phase::at_start) return Outcome::stepped;
+  if (run.phase == Phase::at_start) return {};
   const double interval = run.t - run.last_change;
   run.last_change = run.t;
   const bool unfolded = run.phase == Phase::unfolded;
   if (unfolded) ++run.counted.restarts;
-  const Outcome outcome = start_solver(w);
+  const Result result = start_solver(w);
   if (!unfolded) w.solver.limit_first_step(interval);
-  return outcome;
+  return result;
 }
 
 // The orbit of a run, from its start.
@@ -91,7 +82,7 @@ Shape shape_of(const Demand& demand) {
 // shape. False: the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
   const InForce& now = w.run.in_force;
-  const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
+  const bool acted_on = now.law().kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
   // a carrier that turned it at the start and not any more
   const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
@@ -108,25 +99,21 @@ bool enter_orbit(Wheel& w) {
 }
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
-Outcome set_in_motion(Wheel& w) {
+Result set_in_motion(Wheel& w) {
   const bool is_ready = w.run.phase == Phase::unfolded && w.orbit.is_entered();
-  if (w.run.phase == Phase::stepping || is_ready) return Outcome::stepped;
+  if (w.run.phase == Phase::stepping || is_ready) return {};
   if (!enter_orbit(w)) return start_solver(w);
   w.run.phase = Phase::unfolded;
-  return Outcome::stepped;
+  return {};
 }
 
-// Logs what is observed on the orbit up to t.
-void observe_orbit(Wheel& w, double t) {
-  for (const EventRow& row : event_rows) {
-    const double first = w.orbit.first_time_of(static_cast<int>(row.event));
-    if (first <= t) observe(w, row.event, first);
-  }
-}
-
+// The run goes on to t. What is observed on the orbit is logged where it first occurs.
 void move_to(Wheel& w, double t) {
-  if (w.run.phase == Phase::unfolded && w.orbit.first_time() <= t) observe_orbit(w, t);
   w.run.t = t;
+  if (w.run.phase != Phase::unfolded || w.orbit.first_time() > t) return;
+  for (const EventRow& row : event_rows)
+    if (const double first = w.orbit.first_time_of(static_cast<int>(row.event)); first <= t)
+      observe(w, row.event, first);
 }
 
 // Latest end of the next step on the way to t, s: where an input varies, t, where its polynomial may end, and no step
@@ -144,9 +131,10 @@ double stop_of(const Wheel& w, double t) {
 bool is_about_to_jam(const Wheel& w) {
   CONSTANT(double, little_room, 1e-2, "1", "WheelSlip.room, below which a step that fails has met the jam");
   if (!w.run.in_force.slides()) return false;
+  const double reached = w.solver.known_until();
   double y[max_states];
-  w.solver.read(w.solver.known_until(), y);
-  return wheel_slip(&w.run.in_force.scene, y, y[WHEEL_CHI]).room < little_room;  // the same whatever acts
+  w.solver.read(reached, y);
+  return wheel_slip(&w.run.in_force.scene_at(reached), y, y[WHEEL_CHI]).room < little_room;
 }
 
 // Stage 3 of a motion that is stepped through, until
@@ -154,23 +142,20 @@ bool is_about_to_jam(const Wheel& w) {
 //   an event ends the run, or a step fails where the wheel is about to jam: event;
 //   a step fails elsewhere, or the solver cannot start: failed;
 //   most_work is done: failed.
-Outcome step_to(Wheel& w, double t) {
+Result step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solver;
   const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
-    if (work >= most_work) {
-      w.failure =
-          "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
-          "extreme, or the communication step is too long";
-      return Outcome::failed;
-    }
+    if (work >= most_work)
+      return {Outcome::failed, Event::none,
+              "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
+              "extreme, or the communication step is too long"};
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) {
-      if (!is_about_to_jam(w)) return outcome;
-      w.run.ended_by = Event::jams;
+      if (!is_about_to_jam(w)) return {outcome};
       move_to(w, solver.known_until());
-      return Outcome::event;
+      return {Outcome::event, Event::jams};
     }
     if (w.run.in_force.inputs.loaded) look_at_grip(w, t);
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
@@ -178,24 +163,25 @@ Outcome step_to(Wheel& w, double t) {
     work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
     if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
     move_to(w, solver.known_until());
-    state_now(w);
+    update_state(w);
     const auto event = static_cast<Event>(solver.event());
-    if (ends_run(row_of(event), w.setup)) return outcome;
+    if (ends_run(event_row(event), w.setup)) return {outcome, event};
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
-    else if (start_solver(w) == Outcome::failed)
-      return Outcome::failed;
+    else if (const Result result = start_solver(w); result.outcome == Outcome::failed)
+      return result;
   }
-  return Outcome::stepped;
+  return {};
 }
 
 // Stage 3: the solution becomes known up to t, or up to an event that ends the run.
-Outcome proceed(Wheel& w, double t) {
+Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
-  if (t <= w.orbit.until()) return Outcome::stepped;
-  if (w.orbit.ends()) return Outcome::event;
-  w.failure = "psi or phi would turn so far that the angle has too few digits";
-  return Outcome::failed;
+  if (t <= w.orbit.until()) return {};
+  if (!w.orbit.ends())
+    return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
+  move_to(w, w.orbit.until());
+  return {Outcome::event, static_cast<Event>(w.orbit.event())};
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
@@ -206,62 +192,41 @@ void arrive(Wheel& w, double t) {
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return;
   inputs.stay(t, w.demand.inputs);
-  w.demand.news = News::stays;
-}
-
-// The event of the solution that ends the run.
-void end(Wheel& w) {
-  const bool unfolded = w.run.phase == Phase::unfolded;
-  if (unfolded) move_to(w, w.orbit.until());
-  const auto event = static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event());
-  end_run(w, w.run.ended_by == Event::none ? event : w.run.ended_by);
+  w.run.news = News::stays;
 }
 
 // The state is that before the step, and stays so.
-void fail(Wheel& w, const Run& before) {
+void fail(Wheel& w, const Run& before, const char* failure) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
-  const double spin = state_now(w)[WHEEL_OMEGA_3];
-  const double slip = before.in_force.slides() ? before.y[WHEEL_SLIP] : 0;
+  update_state(w);
+  const double spin = w.run.y[WHEEL_OMEGA_3], slip = before.in_force.slides() ? before.y[WHEEL_SLIP] : 0;
   w.reporter.log(
       Topic::error,
       "The solver stopped at t = %s s, where omega_z = %s rad/s, in a step that began with a slip of %s m/s: %s.",
-      w.time(), Digits{spin, 4}, Digits{slip, 4}, w.failure ? w.failure : w.solver.failure());
+      w.time(), Digits{spin, 4}, Digits{slip, 4}, failure ? failure : w.solver.failure());
   w.run = before;
   w.run.phase = Phase::broken;
 }
 
 Outcome advance_by_stages(Wheel& w, double t) {
-  state_now(w);
+  update_state(w);
   Run before = w.run;
   before.counted = counters_of(w.run, w.solver);
-  const News news = w.demand.news;
   const bool moves = t > w.run.t;
-  w.failure = nullptr;
-  Outcome outcome = apply_demand(w);
-  if (outcome == Outcome::stepped && moves) outcome = set_in_motion(w);
-  if (outcome == Outcome::stepped && moves) outcome = proceed(w, t);
-  if (outcome == Outcome::stepped) arrive(w, t);
-  if (outcome == Outcome::event) end(w);
-  if (outcome == Outcome::failed) {
-    fail(w, before);
-    w.demand.news = news;
-  }
-  return outcome;
-}
-
-// Whether a derivative of an input is not zero: by bits, so that steps with constant inputs lose nothing.
-bool varies(const Polynomials& inputs) {
-  std::uint64_t bits = 0;
-  for (const auto& c : inputs)
-    for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
-  return bits << 1U != 0;
+  Result result = apply_demand(w);
+  if (result.outcome == Outcome::stepped && moves) result = set_in_motion(w);
+  if (result.outcome == Outcome::stepped && moves) result = proceed(w, t);
+  if (result.outcome == Outcome::stepped) arrive(w, t);
+  if (result.outcome == Outcome::event) end_run(w, result.ending);
+  if (result.outcome == Outcome::failed) fail(w, before, result.failure);
+  return result.outcome;
 }
 
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
-  if (!varies(w.demand.inputs)) return {};
-  for (unsigned i = 0; i < inputs_count; ++i) {
+  const bool may_vary = w.run.news != News::none || w.run.phase == Phase::at_start;
+  for (unsigned i = 0; may_vary && i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
     const Span span = span_of(c, h);
@@ -274,7 +239,9 @@ Excess excess_of(const Wheel& w, double h) {
 }
 
 Outcome advance(Wheel& w, double t) {
-  if (w.demand.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
+  const Phase phase = w.run.phase;
+  const bool known = phase == Phase::stepping ? w.solver.reaches(t) : phase == Phase::unfolded && t <= w.orbit.until();
+  if (w.run.news != News::none || !known) return advance_by_stages(w, t);
   arrive(w, t);
   return Outcome::stepped;
 }

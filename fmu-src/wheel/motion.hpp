@@ -9,16 +9,13 @@ namespace wheel {
 // before the call
 [[nodiscard]] solver::Outcome advance(Wheel& wheel, double t);
 
-// (h: s) => the first input whose polynomial would leave its bounds in a step of h, the value that it would reach, and
-// the limit; no limit: none. A brake falls to zero at most.
+// (h: s) => the first input whose polynomial would leave its bounds in the next step, of h, the value that it would
+// reach, and the limit; no limit: none. A brake falls to zero at most.
 struct Excess {
   unsigned input;
   double value;
   Limit limit;
 };
 Excess excess_of(const Wheel& wheel, double h);
-
-// Whether an input may vary in the next step.
-inline bool may_vary(const Wheel& w) { return w.demand.news != News::none || w.run.phase == Phase::at_start; }
 
 }  // namespace wheel

@@ -15,16 +15,15 @@ namespace {
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
 // (t, y) => y_dot; returns the least margin. Of few states are only the equations of a wheel that rolls. States beyond
-// those of the equations rest. Flattened: around a call for an input that varies, registers would be saved at each
-// evaluation.
+// those of the equations rest.
 template <int states>
-[[gnu::flatten]] double derivative(void* owner, double t, const double* y, double* y_dot) {
+double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = wheel_of(owner).setup;
   const InForce& now = wheel_of(owner).run.in_force;
+  const WheelScene& scene = now.scene_at(t);
   const WheelFormulation& formulation =
-      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, now.scene);
-  const auto rates = [&](const WheelScene& scene) { return formulation.derivative(&scene, y, y_dot); };
-  const double N = now.at(t, rates);
+      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
+  const double N = formulation.derivative(&scene, y, y_dot);
   if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
@@ -60,7 +59,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[max_states];
   scales_at(setup, spin, scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (now.scene.friction.kind != WHEEL_REGULARIZED) return;
+  if (now.law().kind != WHEEL_REGULARIZED) return;
   const double part = width * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(spin);
   weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], layer) + rounding * std::fabs(spin));
@@ -68,12 +67,12 @@ void weights(void* owner, double share, const double* y, double* weights) {
 
 // (event, t, y) => its margin
 double margin(void* owner, int event, double t, const double* y) {
-  return margin_of(row_of(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
+  return margin_of(event_row(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
 }
 
 // (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
-  const WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
+  const WheelScene& scene = wheel_of(owner).run.in_force.scene_at(t);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
@@ -87,7 +86,7 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
   const Rates forward = rates_of(setup, scene, y);
   scene.friction = {WHEEL_ROLLING, -1, 0};
   const Rates backward = rates_of(setup, scene, y);
-  const WheelFormulation& formulation = formulation_of(setup, scene);
+  const WheelFormulation& formulation = formulation_of(setup, scene.contact);
   const auto change = [&](int i) { return (forward.y_dot[i] - backward.y_dot[i]) / 2; };
   const double spin_change = change(WHEEL_OMEGA_3);
   for (int i = 0; i < formulation.states; ++i) others[i] = spin_change == 0 ? 0 : change(i) / spin_change;
@@ -108,7 +107,7 @@ solver::Problem problem_of(Wheel& wheel) {
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
   solver::Problem problem = {};
-  const bool few = formulation_of(setup, now.scene).states == WHEEL_REDUCED_STATES;
+  const bool few = formulation_of(setup, now.contact()).states == WHEEL_REDUCED_STATES;
   problem.states = few ? WHEEL_REDUCED_STATES : max_states;
   problem.owner = &wheel;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
@@ -118,7 +117,7 @@ solver::Problem problem_of(Wheel& wheel) {
   CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
   problem.near = near;
   problem.longest_step = setup.longest_step;
-  if (now.scene.friction.kind == WHEEL_REGULARIZED) {
+  if (now.law().kind == WHEEL_REGULARIZED) {
     problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
     const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
@@ -134,7 +133,7 @@ solver::Problem problem_of(Wheel& wheel) {
 
 Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
   auto& wheel = *static_cast<Wheel*>(owner);
-  const EventRow& row = row_of(static_cast<Event>(event));
+  const EventRow& row = event_row(static_cast<Event>(event));
   if (ends_run(row, wheel.setup)) return Consequence::ends;
   double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
@@ -143,7 +142,7 @@ Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
 
 solver::Method method_of(const Setup& setup, const InForce& now) {
   const bool cvode = setup.method == adams_method || setup.method == bdf_method;
-  if (now.slides() || (cvode && now.scene.friction.kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
+  if (now.slides() || (cvode && now.law().kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

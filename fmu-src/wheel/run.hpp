@@ -57,39 +57,56 @@ inline Road road_asked(const Demand& demand) {
   return {v[0], v[1], v[2], v[3], v[4]};
 }
 
-// What acts on the wheel.
-struct InForce {
-  Road road = {};  // as it was asked for; what of it acts is in `scene`, except mu_max
-  // Wheel, mu_slide and `guided` follow from road and setup (set_road_and_inputs), the load is that at the origin of
-  // the inputs, `ground` follows from `below`. Without a law until one is decided.
-  WheelScene scene = {};
+// What acts on the wheel: road, inputs and observed events, the contact and the law of friction, and the scene that
+// follows for the equations. Without a law until one is decided.
+class InForce {
+ public:
+  Road road = {};  // as it was asked for
   Inputs inputs;
   bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
 
-  bool is_below(Event event) const { return below[static_cast<int>(event)]; }
-  bool pulls() const { return is_below(Event::lost_contact); }
+  InForce() = default;
+  // Before anything is set: on a level road without inputs.
+  explicit InForce(const Setup& setup) : scene_(setup.scene) {}
+  // Road and inputs, in force from t on, and the scene that follows from them, from `below` and from the setup. A
+  // mu_max set below mu_slide counts for both.
+  void take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials);
   void cross(Event event) {
     below[static_cast<int>(event)] = !is_below(event);
-    scene.ground = pulls() ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
+    set_ground();
+  }
+  void set_law(const WheelFriction& law) { scene_.friction = law; }
+  void set_contact(WheelContactMode contact) { scene_.contact = contact; }
+
+  bool is_below(Event event) const { return below[static_cast<int>(event)]; }
+  const WheelFriction& law() const { return scene_.friction; }
+  WheelContactMode contact() const { return scene_.contact; }
+  bool slides() const { return contact() == WHEEL_SLIDES; }
+  double mu_slide() const { return scene_.mu_slide; }
+
+  // Until it is asked for at another instant: most inputs are constant, and a copy costs as much as an evaluation.
+  const WheelScene& scene_at(double t) const {
+    if (inputs.varies) inputs.set_load_at(t, scene_.load);
+    return scene_;
   }
 
-  bool slides() const { return scene.contact == WHEEL_SLIDES; }
+ private:
+  void set_ground() { scene_.ground = is_below(Event::lost_contact) ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES; }
 
-  WheelScene scene_at(double t) const {
-    WheelScene scene_then = scene;
-    if (inputs.varies) inputs.set_load_at(t, scene_then.load);
-    return scene_then;
-  }
-  // What `use` makes of the scene at t, without a copy of one that stays.
-  template <class Use>
-  auto at(double t, const Use& use) const {
-    return inputs.varies ? use(scene_at(t)) : use(scene);
-  }
+  mutable WheelScene scene_ = {};  // its load: that at the instant asked for last
+};
+
+// What the caller has set since the last step. It is in force from the next step on; a reading shows it at once.
+enum class News : unsigned char {
+  none,   // nothing
+  stays,  // nothing; the demand holds each input where it arrived in the step, in which one varied
+  set,    // something
 };
 
 struct Run {
   Phase phase = Phase::created;
   Event ended_by = Event::none;
+  News news = News::none;
   InForce in_force;
   double t = 0;            // s, clock of the run: the instant reached
   double y_time = 0;       // s, clock of the run: the instant of y

@@ -148,7 +148,7 @@ Setup setup_of(const Demand& demand) {
                               v[phi_dot_start], setup.X_O.state, setup.Y_O.state, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
   if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.scene.contact = WHEEL_SLIDES;
-  const WheelFormulation& formulation = formulation_of(setup, setup.scene);
+  const WheelFormulation& formulation = formulation_of(setup, setup.scene.contact);
   set_out(formulation, setup.scene.wheel, motion, setup.start);
   formulation.kinematics(&setup.scene.wheel, setup.start, &start);
   set_scales(setup, start);

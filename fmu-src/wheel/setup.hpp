@@ -23,9 +23,6 @@ using solver::max_states;
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
-// What is new since the last step: nothing; inputs that varied in it stay where they arrived; something was set.
-enum class News : unsigned char { none, stays, set };
-
 // Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and the road may be set
 // again later and are in force from the next step on.
 struct Demand {
@@ -33,7 +30,6 @@ struct Demand {
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
-  News news = News::none;
   bool slides = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
 
   // Of a variable below stored_count, or of an input's polynomial.
@@ -89,8 +85,8 @@ Setup setup_of(const Demand& demand);
 void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y);
 
 // The equations of the contact's mode.
-inline const WheelFormulation& formulation_of(const Setup& setup, const WheelScene& scene) {
-  return scene.contact == WHEEL_SLIDES && setup.sliding ? *setup.sliding : *setup.formulation;
+inline const WheelFormulation& formulation_of(const Setup& setup, WheelContactMode contact) {
+  return contact == WHEEL_SLIDES && setup.sliding ? *setup.sliding : *setup.formulation;
 }
 
 struct Rates {
@@ -99,14 +95,14 @@ struct Rates {
 // (scene, y) => y_dot, N
 inline Rates rates_of(const Setup& setup, const WheelScene& scene, const double* y) {
   Rates rates;
-  rates.N = formulation_of(setup, scene).derivative(&scene, y, rates.y_dot);
+  rates.N = formulation_of(setup, scene.contact).derivative(&scene, y, rates.y_dot);
   return rates;
 }
 
 // (scene, y) => accelerations, reactions
 inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, const double* y) {
   WheelDynamics dynamics;
-  formulation_of(setup, scene).dynamics(&scene, y, &dynamics);
+  formulation_of(setup, scene.contact).dynamics(&scene, y, &dynamics);
   return dynamics;
 }
 

@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 #include "constant.hpp"
 #include "exchange.hpp"
@@ -33,8 +32,8 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
 // The derivatives of the variables that are asked for, and behind them, where one needs it, those of what acts: of
 // several steps, for each that with the least error.
 struct Quotients {
-  static constexpr std::size_t computed = variable_count - stored_count,
-                               count = computed + sizeof(Acting) / sizeof(double);
+  using Parts = std::array<double, sizeof(Acting) / sizeof(double)>;
+  static constexpr std::size_t computed = variable_count - stored_count, count = computed + std::tuple_size_v<Parts>;
   using Numbers = std::array<double, count>;
   bool asked[computed] = {}, by_force = false;
   Numbers centre = {}, slope = {}, error;
@@ -53,21 +52,26 @@ struct Quotients {
     for (unsigned k = 0; k < computed; ++k)
       if (asked[k]) numbers[k] = row_of(stored_count + k).read(reading);
     if (!by_force) return numbers;
-    const Acting acting = acting_of(reading);
-    std::memcpy(&numbers[computed], &acting, sizeof acting);
+    const auto parts = std::bit_cast<Parts>(acting_of(reading));
+    std::copy(parts.begin(), parts.end(), numbers.begin() + computed);
     return numbers;
+  }
+  static Acting acting_in(const Numbers& numbers) {
+    Parts parts;
+    std::copy_n(numbers.begin() + computed, parts.size(), parts.begin());
+    return std::bit_cast<Acting>(parts);
   }
 
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `move_to` leads
-  // `now` to a place, if there is such a wheel.
+  // the reading to a place, if there is such a wheel.
   template <class MoveTo>
-  bool take(const Stencil& stencil, double x, double h, const Reading& now, const MoveTo& move_to) {
+  bool take(const Stencil& stencil, double x, double h, const Reading& reading, const MoveTo& move_to) {
     if (!move_to(x)) return false;
-    centre = sample(now);
+    centre = sample(reading);
     Numbers quotient = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
       if (!move_to(x + stencil.places[k] * h)) return false;
-      const Numbers at = sample(now);
+      const Numbers at = sample(reading);
       for (std::size_t i = 0; i < count; ++i) {
         quotient[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
         bend[i] += stencil.bend[k] * (at[i] - centre[i]) / h;
@@ -98,14 +102,14 @@ struct Quotients {
   //   the step is as small as rounding;
   //   none of the first steps is possible: false.
   template <class MoveTo>
-  bool refine(double x, double scale, const Reading& now, const MoveTo& move_to) {
+  bool refine(double x, double scale, const Reading& reading, const MoveTo& move_to) {
     constexpr double finest = std::numeric_limits<double>::epsilon();
     CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
     bool done = false;
     double part = first_part;
     while (part > (done ? finest : finest_first) && !settle(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
-                          [&](const Stencil& stencil) { return take(stencil, x, part * scale, now, move_to); });
+                          [&](const Stencil& stencil) { return take(stencil, x, part * scale, reading, move_to); });
       part *= 0.1;
     }
     return done;
@@ -114,9 +118,8 @@ struct Quotients {
   // What is not linear in the forces follows from them. tau_rate: the part of the rate of tau that is left out.
   void complete(double tau_rate = 0) {
     slope[variable::tau - stored_count] += tau_rate;
-    Acting acting, rate;
-    std::memcpy(&acting, &centre[computed], sizeof acting);
-    std::memcpy(&rate, &slope[computed], sizeof rate);
+    const Acting acting = acting_in(centre);
+    Acting rate = acting_in(slope);
     rate.axle.tau += tau_rate;
     for (unsigned k = 0; k < computed; ++k)
       if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(acting, rate);
@@ -126,38 +129,40 @@ struct Quotients {
 // In the initial state, or by a rate of the carrier, which jumps; an integer or boolean parameter moves nothing. The
 // step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is relative to the
 // parameter or to 1, whichever is larger.
-bool take_by_parameter(Wheel& w, unsigned parameter, Quotients& quotients) {
+bool take_by_parameter(const Wheel& w, unsigned parameter, Quotients& quotients) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
                      parameter == variable::slope_direction;  // the same after a whole turn
   const double set = w.demand.value(parameter), x = turns ? wheel_less_turns(set) : set, size = std::fabs(x);
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
-  Reading now;
+  Record near = static_cast<const Record&>(w);
+  read_state(w, near.run.y);
+  near.run.news = News::set;
+  Reading reading(near, near.run.y);
   const auto move_to = [&](double near_x) {
-    w.demand.value(parameter) = near_x;
-    const bool exists = has_begun(w.run.phase) || prepare(w, Reporter());
-    if (exists) now = Reading(w);
+    near.demand.value(parameter) = near_x;
+    const bool exists = has_begun(near.run.phase) || prepare(near, Reporter());
+    if (exists) reading = Reading(near, near.run.y);
     return exists;
   };
-  const News news = std::exchange(w.demand.news, News::set);
-  const bool done = quotients.refine(x, scale, now, move_to);
+  const bool done = quotients.refine(x, scale, reading, move_to);
   quotients.complete();
-  if (has_begun(w.run.phase)) w.demand.news = news;
-  return move_to(set) && done;
+  return done;
 }
 
 // The ground as it is at this instant, by the sign of N.
-void keep_ground(Reading& now) {
-  now.scene.ground = rates_of(*now.setup, now.scene, now.y).N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+void keep_ground(Reading& reading) {
+  const double N = rates_of(*reading.setup, reading.scene, reading.y).N;
+  reading.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
 // A brake that is not in use has the law that it would have in use; in model exchange that law waits for an event.
-void put_brake_in_use(const Wheel& w, Reading& now) {
-  if (w.setup.exchanged || now.scene.friction.kind != WHEEL_FRICTIONLESS) return;
-  InForce used = in_force_now(w, now.y);
+void put_brake_in_use(Reading& reading) {
+  if (reading.setup->exchanged || reading.scene.friction.kind != WHEEL_FRICTIONLESS) return;
+  InForce used = reading.in_force;
   used.inputs.braked = true;
-  decide_law(w.setup, w.run.t, now.y, used);
-  now.scene.friction = used.scene.friction;
+  decide_law(*reading.setup, reading.t, reading.y, used);
+  reading.scene.friction = used.law();
 }
 
 // (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
@@ -173,28 +178,28 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
 
 // (an input or a state) => derivatives by it; the law and the sign of N are kept. Where a slide begins here, the loads
 // decide the direction of the slip.
-bool take_at_instant(Wheel& w, unsigned known, Quotients& quotients) {
+void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   const Setup& setup = w.setup;
-  Reading now(w);
-  if (known == variable::M_brake) put_brake_in_use(w, now);
-  keep_ground(now);
+  Reading reading = read_now(w);
+  WheelScene& scene = reading.scene;
+  if (known == variable::M_brake) put_brake_in_use(reading);
+  keep_ground(reading);
   if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
-    for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) now.x[angle] = wheel_less_turns(now.x[angle]);
+    for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) reading.x[angle] = wheel_less_turns(reading.x[angle]);
   const int in_x = setup.exchanged ? place_in_x(known) : -1;
-  double& place = in_x >= 0 ? now.x[in_x] : *load_entry(now.scene.load, static_cast<int>(known - first_input));
-  const double size = size_of(setup, now.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
-  const WheelScene& before = has_begun(w.run.phase) ? w.run.in_force.scene : setup.scene;
-  const bool begins = now.scene.contact == WHEEL_SLIDES && before.contact == WHEEL_GRIPS;
+  double& place = in_x >= 0 ? reading.x[in_x] : *load_entry(scene.load, static_cast<int>(known - first_input));
+  const double size = size_of(setup, scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
+  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.contact() : setup.scene.contact;
+  const bool begins = scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
   const auto move_to = [&](double x) {
     place = x;
-    if (setup.exchanged) wheel_reduced_state(now.x, now.y);
-    if (begins) now.y[WHEEL_CHI] = first_direction(now.scene, now.y);
+    if (setup.exchanged) wheel_reduced_state(reading.x, reading.y);
+    if (begins) reading.y[WHEEL_CHI] = first_direction(scene, reading.y);
     return true;
   };
-  begins ? quotients.refine(place, size, now, move_to)
-         : quotients.take(stencils[0], place, first_part * size, now, move_to);
+  begins ? quotients.refine(place, size, reading, move_to)
+         : quotients.take(stencils[0], place, first_part * size, reading, move_to);
   quotients.complete();
-  return true;
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -208,16 +213,15 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 
 // In a small part of the time in which the wheel itself moves. kappa of a regularized law is kept: its rate can be
 // large, and acts as a moment about the axle.
-void take_along_motion(Wheel& w, Quotients& quotients) {
+void take_along_motion(const Wheel& w, Quotients& quotients) {
   const Setup& setup = w.setup;
-  Reading start(w);
+  Reading start = read_now(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
     start.y[angle] = wheel_less_turns(start.y[angle]);
   keep_ground(start);
-  const WheelFormulation& formulation = formulation_of(setup, start.scene);
+  const WheelFormulation& formulation = formulation_of(setup, start.scene.contact);
   const Rates rates = rates_of(setup, start.scene, start.y);
-  const Inputs& inputs = w.run.in_force.inputs;
-  WheelLoad rate = acts_on(w) ? load_rate_of(inputs.c, w.run.t - inputs.origin) : load_rate_of(w.demand.inputs);
+  WheelLoad rate = start.in_force.inputs.load_rate_at(start.t);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
@@ -228,29 +232,29 @@ void take_along_motion(Wheel& w, Quotients& quotients) {
     rate.M[2] += tau_rate;
     law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};
   }
-  Reading now = start;
+  Reading reading = start;
   const auto move_to = [&](double t) {
-    for (int i = 0; i < formulation.states; ++i) now.y[i] = start.y[i] + t * rates.y_dot[i];
-    now.scene.load = start.scene.load;
-    for (int i = 0; i < inputs_count; ++i) *load_entry(now.scene.load, i) += t * *load_entry(rate, i);
+    for (int i = 0; i < formulation.states; ++i) reading.y[i] = start.y[i] + t * rates.y_dot[i];
+    reading.scene.load = start.scene.load;
+    for (int i = 0; i < inputs_count; ++i) *load_entry(reading.scene.load, i) += t * *load_entry(rate, i);
     return true;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  quotients.take(stencils[0], 0, pace > 0 ? first_part / pace : 1, now, move_to);
+  quotients.take(stencils[0], 0, pace > 0 ? first_part / pace : 1, reading, move_to);
   quotients.complete(tau_rate);
 }
 
 }  // namespace
 
-void read_rates(Wheel& w, Listed outputs, std::size_t count, double* out) {
+void read_rates(const Wheel& w, Listed outputs, std::size_t count, double* out) {
   Quotients quotients;
-  Reading reading(w);
+  Reading reading = read_now(w);
   bool missing = false;
-  for (std::size_t k = 0; k < count; ++k)
-    if (!row_of(outputs[k]).read_rate) {
-      quotients.ask(outputs[k]);
-      missing = true;
-    }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (row_of(outputs[k]).read_rate) continue;
+    quotients.ask(outputs[k]);
+    missing = true;
+  }
   if (missing) take_along_motion(w, quotients);
   for (std::size_t k = 0; k < count; ++k) {
     const Row& row = row_of(outputs[k]);
@@ -258,8 +262,7 @@ void read_rates(Wheel& w, Listed outputs, std::size_t count, double* out) {
   }
 }
 
-bool add_slopes(Wheel& w, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums) {
-  w.reading.reset();
+bool add_slopes(const Wheel& w, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums) {
   const bool parameter = known < first_input;
   if (parameter && row_of(known).type != Type::real) return true;
   const bool of_slip =
@@ -271,7 +274,9 @@ bool add_slopes(Wheel& w, unsigned known, double seed, Listed unknowns, std::siz
   if (guides && !w.setup.steered()) return true;
   Quotients quotients;
   for (std::size_t k = 0; k < count; ++k) quotients.ask(unknowns[k]);
-  if (!(parameter || guides ? take_by_parameter(w, known, quotients) : take_at_instant(w, known, quotients)))
+  if (!parameter && !guides)
+    take_at_instant(w, known, quotients);
+  else if (!take_by_parameter(w, known, quotients))
     return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * quotients.of(unknowns[k]);
   return true;

@@ -8,12 +8,11 @@ namespace wheel {
 
 // (outputs) => their d/dt at the present instant, while the law and the sign of N last, under inputs that follow their
 // polynomials.
-void read_rates(Wheel& wheel, Listed outputs, std::size_t count, double* out);
+void read_rates(const Wheel& wheel, Listed outputs, std::size_t count, double* out);
 
 // (known, seed, unknowns, `count` of them) => sums[k] += seed times the derivative of each unknown by the known. All
 // unknowns are read in one pass. What depends on inputs only through time has the derivative zero. False where no
-// initial states lie near a parameter. Before the run it writes setup and run, and leaves the initial state of the
-// present parameters.
-bool add_slopes(Wheel& wheel, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums);
+// initial states lie near a parameter.
+bool add_slopes(const Wheel& wheel, unsigned known, double seed, Listed unknowns, std::size_t count, double* sums);
 
 }  // namespace wheel

@@ -27,7 +27,9 @@ struct Header {
 
 // What the caller has set, and what of the run does not follow from it. The bounds keep forged numbers harmless, not
 // meaningful.
-void visit(support::Archive& archive, Demand& demand, Run& run) {
+void visit(support::Archive& archive, Record& record) {
+  Demand& demand = record.demand;
+  Run& run = record.run;
   InForce& now = run.in_force;
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive.number(demand.start_time);
@@ -37,16 +39,20 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
-  archive.count(demand.news, 0, static_cast<int>(News::set));
+  archive.count(run.news, 0, static_cast<int>(News::set));
   archive.count(demand.slides, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);
   for (double* x : {&now.road.s, &now.road.mu_max, &now.road.mu_slide}) archive.range(*x, 0, archive.greatest);
   archive.range(now.road.slope, 0, upright);
   archive.range(now.road.slope_direction, -largest_angle, largest_angle);
-  archive.count(now.scene.friction.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
-  archive.range(now.scene.friction.sigma, -1, 1);
-  archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  WheelFriction law = now.law();
+  WheelContactMode contact = now.contact();
+  archive.count(law.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
+  archive.range(law.sigma, -1, 1);
+  archive.count(contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  now.set_law(law);
+  now.set_contact(contact);
   archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
@@ -62,23 +68,25 @@ void visit(support::Archive& archive, Demand& demand, Run& run) {
 
 // Completes a run that was read by what follows from its demand. False where the demand describes no wheel, or the run
 // names an equation or an event that does not exist.
-bool complete(const Demand& demand, Setup& setup, Run& run) {
+bool complete(Record& record) {
+  auto& [demand, setup, run] = record;
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
   const bool ended = run.ended_by != Event::none;
-  if (ended ? !row_of(run.ended_by).ending : run.phase == Phase::ended) return false;
+  if (ended ? !event_row(run.ended_by).ending : run.phase == Phase::ended) return false;
   if (!has_state(run.phase)) return true;
   if (!check_values(demand, Reporter(), false)) return false;
   setup = setup_of(demand);
   run.y_time = run.t;
   if (setup.exchanged) wheel_reduced_state(run.x, run.y);
   InForce& now = run.in_force;
-  set_road_and_inputs(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c, now);
-  now.scene.friction.omega_s = now.scene.friction.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  now.take_over(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c);
+  const WheelFriction& law = now.law();
+  now.set_law({law.kind, law.sigma, law.kind == WHEEL_REGULARIZED ? setup.omega_s : 0});
   return setup.sliding || !now.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {
-  visit(archive, w.demand, w.run);
+  visit(archive, w);
   if (w.run.phase == Phase::stepping) w.solver.save_history(archive);
 }
 
@@ -91,7 +99,7 @@ std::size_t state_size(Wheel& w) {
 }
 
 void save_state(Wheel& w, unsigned char* bytes) {
-  if (has_state(w.run.phase)) state_now(w);
+  if (has_state(w.run.phase)) update_state(w);
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
   write(w, archive);
   const std::size_t size = archive.bytes();
@@ -112,17 +120,13 @@ const char* fault_of(Kind kind, const unsigned char* bytes, std::size_t size) {
 const char* load_state(Wheel& w, const unsigned char* bytes, std::size_t size) {
   if (const char* fault = fault_of(w.demand.kind, bytes, size)) return fault;
   support::Archive archive = support::Archive::reading(bytes + sizeof(Header), size - sizeof(Header));
-  Demand demand(w.demand.kind);
-  Setup setup = {};
-  Run run;
-  visit(archive, demand, run);
-  const bool stepping = run.phase == Phase::stepping;
-  if (!archive.fits() || !complete(demand, setup, run) || (!stepping && !archive.is_sound())) return forged;
-  w.demand = demand;
-  w.setup = setup;
-  w.run = run;
+  Record record(w.demand.kind);
+  visit(archive, record);
+  const bool stepping = record.run.phase == Phase::stepping;
+  if (!archive.fits() || !complete(record) || (!stepping && !archive.is_sound())) return forged;
+  static_cast<Record&>(w) = record;
   w.orbit.leave();
-  if (!stepping || w.solver.restore_history(problem_of(w), method_of(setup, run.in_force), archive)) return nullptr;
+  if (!stepping || w.solver.restore_history(problem_of(w), method_of(w.setup, w.run.in_force), archive)) return nullptr;
   w.run.phase = Phase::broken;
   return forged;
 }

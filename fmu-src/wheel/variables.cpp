@@ -17,48 +17,48 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double strongest = 1e300;
 
 // (reading) => J, of the whole X_O and Y_O
-double energy(Reading& now) {
-  WheelKinematics whole = now.kinematics();
-  whole.X_O = now.setup->X_O.whole(whole.X_O);
-  whole.Y_O = now.setup->Y_O.whole(whole.Y_O);
-  return wheel_energy(&now.scene.wheel, &whole);
+double energy(Reading& reading) {
+  WheelKinematics whole = reading.kinematics();
+  whole.X_O = reading.setup->X_O.whole(whole.X_O);
+  whole.Y_O = reading.setup->Y_O.whole(whole.Y_O);
+  return wheel_energy(&reading.scene.wheel, &whole);
 }
 
 // (vector in fixed axes, axis) => its part along e1 (0) or across it (1)
-double horizontal(Reading& now, const double (&vector)[3], int axis) {
+double horizontal(Reading& reading, const double (&vector)[3], int axis) {
   double parts[2];
-  wheel_horizontal_force(&now.kinematics(), vector, parts);
+  wheel_horizontal_force(&reading.kinematics(), vector, parts);
   return parts[axis];
 }
 
 // (axis) => m/s, of O
-double velocity(Reading& now, int axis) {
-  return horizontal(now, {now.kinematics().X_O_dot, now.kinematics().Y_O_dot, 0}, axis);
+double velocity(Reading& reading, int axis) {
+  return horizontal(reading, {reading.kinematics().X_O_dot, reading.kinematics().Y_O_dot, 0}, axis);
 }
 
 // (axis) => N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1)
-double guide_moment(Reading& now, int axis) {
+double guide_moment(Reading& reading, int axis) {
   double moment[2] = {};
-  if (now.scene.guided) wheel_guide_moment(&now.scene, &now.kinematics(), &now.dynamics(), moment);
+  if (reading.scene.guided) wheel_guide_moment(&reading.scene, &reading.kinematics(), &reading.dynamics(), moment);
   return moment[axis];
 }
 
 // (axis) => m/s, of the wheel's material point at the contact: along e1 (0) or across it (1)
-double slip(const Reading& now, int axis) {
-  if (now.scene.contact == WHEEL_GRIPS) return 0;
-  const double chi = now.y[WHEEL_CHI];
-  return now.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
+double slip(const Reading& reading, int axis) {
+  if (reading.scene.contact == WHEEL_GRIPS) return 0;
+  const double chi = reading.y[WHEEL_CHI];
+  return reading.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
 }
 
-double brake_moment(Reading& now) {
-  const WheelAxleMoment axle = acting_of(now).axle;
+double brake_moment(Reading& reading) {
+  const WheelAxleMoment axle = acting_of(reading).axle;
   return wheel_brake_moment(&axle);
 }
 
-int friction_mode(Reading& now) {
-  const WheelFriction& friction = now.scene.friction;
+int friction_mode(Reading& reading) {
+  const WheelFriction& friction = reading.scene.friction;
   if (friction.kind == WHEEL_HELD) return 0;
-  const double side = friction.kind == WHEEL_ROLLING ? friction.sigma : now.kinematics().omega_z;
+  const double side = friction.kind == WHEEL_ROLLING ? friction.sigma : reading.kinematics().omega_z;
   return (side > 0) - (side < 0);
 }
 
@@ -69,53 +69,53 @@ struct Access {
   double (*by_force)(const Acting&, const Acting&) = nullptr;
 };
 
-#define AT(expression) [](Reading& now) -> double { return expression; }
+#define AT(expression) [](Reading& reading) -> double { return expression; }
 
 constexpr Access readers[] = {
-    {variable::X_O, AT(now.setup->X_O.whole(now.kinematics().X_O)), AT(now.kinematics().X_O_dot)},
-    {variable::Y_O, AT(now.setup->Y_O.whole(now.kinematics().Y_O)), AT(now.kinematics().Y_O_dot)},
-    {variable::Z_O, AT(now.kinematics().Z_O), AT(now.kinematics().Z_O_dot)},
-    {variable::psi, AT(now.setup->psi.whole(now.kinematics().psi)), AT(now.kinematics().psi_dot)},
-    {variable::theta, AT(now.kinematics().theta), AT(now.kinematics().theta_dot)},
-    {variable::phi, AT(now.setup->phi.whole(now.kinematics().phi)), AT(now.kinematics().phi_dot)},
-    {variable::X_O_dot, AT(now.kinematics().X_O_dot), AT(now.dynamics().X_O_ddot)},
-    {variable::Y_O_dot, AT(now.kinematics().Y_O_dot), AT(now.dynamics().Y_O_ddot)},
-    {variable::Z_O_dot, AT(now.kinematics().Z_O_dot), AT(now.dynamics().Z_O_ddot)},
-    {variable::psi_dot, AT(now.kinematics().psi_dot), AT(now.dynamics().psi_ddot)},
-    {variable::theta_dot, AT(now.kinematics().theta_dot), AT(now.dynamics().theta_ddot)},
-    {variable::phi_dot, AT(now.kinematics().phi_dot), AT(now.dynamics().phi_ddot)},
-    {variable::omega_z, AT(now.kinematics().omega_z), AT(now.dynamics().omega_z_dot)},
-    {variable::lambda_1, AT(now.dynamics().lambda[0])},
-    {variable::lambda_2, AT(now.dynamics().lambda[1])},
-    {variable::lambda_3, AT(now.dynamics().lambda[2])},
-    {variable::X_C, AT(now.setup->X_O.whole(now.contact().X_C)), AT(now.contact().X_C_dot)},
-    {variable::Y_C, AT(now.setup->Y_O.whole(now.contact().Y_C)), AT(now.contact().Y_C_dot)},
-    {variable::lambda_x, AT(horizontal(now, now.dynamics().lambda, 0))},
-    {variable::lambda_y, AT(horizontal(now, now.dynamics().lambda, 1))},
-    {variable::tau, AT(now.dynamics().tau)},
-    {variable::tau_brake, AT(brake_moment(now)), nullptr,
+    {variable::X_O, AT(reading.setup->X_O.whole(reading.kinematics().X_O)), AT(reading.kinematics().X_O_dot)},
+    {variable::Y_O, AT(reading.setup->Y_O.whole(reading.kinematics().Y_O)), AT(reading.kinematics().Y_O_dot)},
+    {variable::Z_O, AT(reading.kinematics().Z_O), AT(reading.kinematics().Z_O_dot)},
+    {variable::psi, AT(reading.setup->psi.whole(reading.kinematics().psi)), AT(reading.kinematics().psi_dot)},
+    {variable::theta, AT(reading.kinematics().theta), AT(reading.kinematics().theta_dot)},
+    {variable::phi, AT(reading.setup->phi.whole(reading.kinematics().phi)), AT(reading.kinematics().phi_dot)},
+    {variable::X_O_dot, AT(reading.kinematics().X_O_dot), AT(reading.dynamics().X_O_ddot)},
+    {variable::Y_O_dot, AT(reading.kinematics().Y_O_dot), AT(reading.dynamics().Y_O_ddot)},
+    {variable::Z_O_dot, AT(reading.kinematics().Z_O_dot), AT(reading.dynamics().Z_O_ddot)},
+    {variable::psi_dot, AT(reading.kinematics().psi_dot), AT(reading.dynamics().psi_ddot)},
+    {variable::theta_dot, AT(reading.kinematics().theta_dot), AT(reading.dynamics().theta_ddot)},
+    {variable::phi_dot, AT(reading.kinematics().phi_dot), AT(reading.dynamics().phi_ddot)},
+    {variable::omega_z, AT(reading.kinematics().omega_z), AT(reading.dynamics().omega_z_dot)},
+    {variable::lambda_1, AT(reading.dynamics().lambda[0])},
+    {variable::lambda_2, AT(reading.dynamics().lambda[1])},
+    {variable::lambda_3, AT(reading.dynamics().lambda[2])},
+    {variable::X_C, AT(reading.setup->X_O.whole(reading.contact().X_C)), AT(reading.contact().X_C_dot)},
+    {variable::Y_C, AT(reading.setup->Y_O.whole(reading.contact().Y_C)), AT(reading.contact().Y_C_dot)},
+    {variable::lambda_x, AT(horizontal(reading, reading.dynamics().lambda, 0))},
+    {variable::lambda_y, AT(horizontal(reading, reading.dynamics().lambda, 1))},
+    {variable::tau, AT(reading.dynamics().tau)},
+    {variable::tau_brake, AT(brake_moment(reading)), nullptr,
      [](const Acting& acting, const Acting& rate) { return wheel_brake_moment_rate(&acting.axle, &rate.axle); }},
-    {variable::slip_x, AT(slip(now, 0))},
-    {variable::slip_y, AT(slip(now, 1))},
-    {variable::M_guide_1, AT(guide_moment(now, 0))},
-    {variable::M_guide_2, AT(guide_moment(now, 1))},
-    {variable::v_x, AT(velocity(now, 0))},
-    {variable::v_y, AT(velocity(now, 1))},
-    {variable::theta_ddot, AT(now.dynamics().theta_ddot)},
-    {variable::psi_ddot, AT(now.dynamics().psi_ddot)},
-    {variable::phi_ddot, AT(now.dynamics().phi_ddot)},
-    {variable::omega_z_dot, AT(now.dynamics().omega_z_dot)},
-    {variable::E, AT(energy(now))},
-    {variable::mu_required, AT(wheel_required_friction(now.dynamics().lambda)), nullptr,
+    {variable::slip_x, AT(slip(reading, 0))},
+    {variable::slip_y, AT(slip(reading, 1))},
+    {variable::M_guide_1, AT(guide_moment(reading, 0))},
+    {variable::M_guide_2, AT(guide_moment(reading, 1))},
+    {variable::v_x, AT(velocity(reading, 0))},
+    {variable::v_y, AT(velocity(reading, 1))},
+    {variable::theta_ddot, AT(reading.dynamics().theta_ddot)},
+    {variable::psi_ddot, AT(reading.dynamics().psi_ddot)},
+    {variable::phi_ddot, AT(reading.dynamics().phi_ddot)},
+    {variable::omega_z_dot, AT(reading.dynamics().omega_z_dot)},
+    {variable::E, AT(energy(reading))},
+    {variable::mu_required, AT(wheel_required_friction(reading.dynamics().lambda)), nullptr,
      [](const Acting& acting, const Acting& rate) { return wheel_required_friction_rate(acting.lambda, rate.lambda); }},
-    {variable::contact_mode, AT(now.scene.contact)},
-    {variable::friction_mode, AT(friction_mode(now))},
-    {variable::n_steps, AT(double(now.counters.steps))},
-    {variable::n_rhs, AT(double(now.counters.rhs))},
-    {variable::n_jac, AT(double(now.counters.jacobians))},
-    {variable::n_roots, AT(double(now.counters.roots))},
-    {variable::n_events, AT(double(now.transitions))},
-    {variable::n_restarts, AT(double(now.counters.restarts))},
+    {variable::contact_mode, AT(reading.scene.contact)},
+    {variable::friction_mode, AT(friction_mode(reading))},
+    {variable::n_steps, AT(double(reading.counters.steps))},
+    {variable::n_rhs, AT(double(reading.counters.rhs))},
+    {variable::n_jac, AT(double(reading.counters.jacobians))},
+    {variable::n_roots, AT(double(reading.counters.roots))},
+    {variable::n_events, AT(double(reading.transitions))},
+    {variable::n_restarts, AT(double(reading.counters.restarts))},
 };
 
 #undef AT
@@ -168,10 +168,10 @@ unsigned variable_of(unsigned reference) { return reference < places.size() ? pl
 
 const Row& row_of(unsigned variable) { return rows[variable]; }
 
-Acting acting_of(Reading& now) {
-  const WheelDynamics& d = now.dynamics();
-  const WheelAxleMoment axle = {d.tau, d.lambda[2], now.scene.wheel.s, now.scene.load.brake};
-  return {now.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
+Acting acting_of(Reading& reading) {
+  const WheelDynamics& d = reading.dynamics();
+  const WheelAxleMoment axle = {d.tau, d.lambda[2], reading.scene.wheel.s, reading.scene.load.brake};
+  return {reading.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
 }
 
 Limit limit_passed(unsigned v, double value) {

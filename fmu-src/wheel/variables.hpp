@@ -47,12 +47,12 @@ struct Row {
   double (*read)(Reading&);       // computed variables, else null
   double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.cpp
   // The derivative of what is not linear in the forces, from the present and the rates; else null.
-  double (*by_force)(const Acting& now, const Acting& rate);
+  double (*by_force)(const Acting& acting, const Acting& rate);
 };
 
 const Row& row_of(unsigned variable);
 // (reading) => how the wheel moves, and what acts on it
-Acting acting_of(Reading& now);
+Acting acting_of(Reading& reading);
 
 // A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the
 // message of it: name, value, limit.

@@ -13,13 +13,13 @@ namespace {
 
 // Whether the initial state is inside the model, with a message: no force of the ground holds a wheel that jams, and
 // values that are sound one by one can have products that are not finite.
-bool check_start(const Wheel& w, Reading& start, const Reporter& reporter) {
-  const InForce& now = w.run.in_force;
-  if (now.slides() && margin_of(row_of(Event::jams), w.setup, now, 0, w.run.y) < 0)
+bool check_start(const Record& r, Reading& start, const Reporter& reporter) {
+  const InForce& now = r.run.in_force;
+  if (now.slides() && margin_of(event_row(Event::jams), r.setup, now, 0, r.run.y) < 0)
     return reporter.check(false, "At the start the wheel %s: the run ends there.", ending_of(now, Event::jams).text);
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
   for (const double force : start.dynamics().lambda) sum += force;
-  const auto set = [&](variable::Place v) { return Digits{w.demand.parameters[v], 3}; };
+  const auto set = [&](variable::Place v) { return Digits{r.demand.parameters[v], 3}; };
   return reporter.check(angle_from_flat(start.kinematics().theta) > 0 && std::isfinite(sum),
                         "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, "
                         "g = %s m/s2, omega_z = %s rad/s.",
@@ -39,55 +39,41 @@ void warn_of_paper_start(const Wheel& w) {
 
 // To a phase without further steps: the solution is not needed any more.
 void freeze(Wheel& w, Phase phase) {
-  state_now(w);
+  update_state(w);
   w.run.counted = counters_of(w.run, w.solver);
   w.run.phase = phase;
 }
 
 }  // namespace
 
-const double* state_now(Wheel& w) {
-  Run& run = w.run;
-  if (run.y_time == run.t) return run.y;
-  run.phase == Phase::unfolded ? w.orbit.read(run.t, run.y) : w.solver.read(run.t, run.y);
-  run.y_time = run.t;
-  return run.y;
+void read_state(const Wheel& w, double* y) {
+  const Run& run = w.run;
+  if (y != run.y) std::copy_n(run.y, max_states, y);
+  if (run.y_time == run.t) return;
+  run.phase == Phase::unfolded ? w.orbit.read(run.t, y) : w.solver.read(run.t, y);
 }
 
-bool prepare(Wheel& w, const Reporter& reporter) {
-  Run& run = w.run;
-  run = Run();
-  run.phase = Phase::faulty;
-  w.demand.slides = w.demand.parameters[variable::mu_slide] > 0;
-  if (!check_values(w.demand, reporter, true)) return false;
-  w.setup = setup_of(w.demand);
-  std::copy_n(w.setup.start, max_states, run.y);
-  run.in_force.scene = w.setup.scene;
-  if (w.setup.steered()) set_guide_rates(w.setup, w.demand, run.in_force.scene, true, run.y);
-  enforce(w.setup, w.demand, 0, run.y, run.in_force);
-  if (w.setup.exchanged) wheel_euler_states(run.y, w.demand.parameters[variable::psi_dot_start], run.x);
-  w.demand.news = News::none;
-  Reading start(w);
-  if (check_start(w, start, reporter)) run.phase = Phase::initial;
-  return run.phase == Phase::initial;
-}
-
-InForce in_force_now(const Wheel& w, double* y) {
-  InForce now = w.run.in_force;
-  if (w.demand.news != News::none) enforce(w.setup, w.demand, w.run.t, y, now);
-  return now;
-}
-
-Reading::Reading(Wheel& w) : setup(&w.setup), counters(counters_of(w.run, w.solver)), transitions(w.run.transitions) {
-  std::copy_n(state_now(w), max_states, y);
-  std::copy_n(w.run.x, WHEEL_EULER_STATES, x);
-  scene = acts_on(w) ? w.run.in_force.scene_at(w.run.t) : in_force_now(w, y).scene;
+Reading::Reading(const Record& r, const double* y_reached)
+    : setup(&r.setup), t(r.run.t), in_force(r.run.in_force), counters(r.run.counted), transitions(r.run.transitions) {
+  std::copy_n(y_reached, max_states, y);
+  std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
+  // Where inputs stay, a carrier turns on as in the step until the next one begins.
+  const bool acts_on = r.run.news == News::none || (r.run.news == News::stays && setup->steered());
+  if (!acts_on) enforce(*setup, r.demand, t, y, in_force);
+  scene = in_force.scene_at(t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
+Reading read_now(const Wheel& w) {
+  double y[max_states];
+  read_state(w, y);
+  Reading reading(w, y);
+  reading.counters = counters_of(w.run, w.solver);
+  return reading;
+}
+
 void reset(Wheel& w) {
-  w.demand = Demand(w.demand.kind);
-  w.run = Run();
+  static_cast<Record&>(w) = Record(w.demand.kind);
   w.endings = 0;
 }
 
@@ -102,18 +88,34 @@ void set_experiment(Wheel& w, double start_time, double stop_time, double tolera
 }
 
 void set(Wheel& w, unsigned variable, double value, int order) {
-  if (variable >= stored_count) {
-    w.run.x[place_in_x(variable)] = value;
-    wheel_reduced_state(w.run.x, w.run.y);
-    return decide_law(w.setup, w.run.t, w.run.y, w.run.in_force);
-  }
-  if (w.run.phase == Phase::faulty || w.run.phase == Phase::initial) w.run.phase = Phase::initializing;
+  if (variable >= stored_count) return set_state(w, variable, value);
+  Run& run = w.run;
+  if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
   const double taken = value / factorial[order];
-  if (asked == taken && w.demand.news != News::stays) return;  // what is set to where it stays counts as set
+  if (asked == taken && run.news != News::stays) return;  // what is set to where it stays counts as set
   asked = taken;
-  w.demand.news = News::set;
-  if (w.demand.kind == Kind::model_exchange && is_running(w.run.phase)) act_at_once(w);
+  run.news = News::set;
+  if (w.demand.kind == Kind::model_exchange && is_running(run.phase)) act_at_once(w);
+}
+
+void begin_initialization(Wheel& w) { w.run.phase = Phase::initializing; }
+
+bool prepare(Record& r, const Reporter& reporter) {
+  Run& run = r.run;
+  run = Run();
+  run.phase = Phase::faulty;
+  r.demand.slides = r.demand.parameters[variable::mu_slide] > 0;
+  if (!check_values(r.demand, reporter, true)) return false;
+  r.setup = setup_of(r.demand);
+  std::copy_n(r.setup.start, max_states, run.y);
+  run.in_force = InForce(r.setup);
+  if (r.setup.steered()) set_guide_rates(r.setup, r.demand, r.setup.scene, true, run.y);
+  enforce(r.setup, r.demand, 0, run.y, run.in_force);
+  if (r.setup.exchanged) wheel_euler_states(run.y, r.demand.parameters[variable::psi_dot_start], run.x);
+  Reading start(r, run.y);
+  if (check_start(r, start, reporter)) run.phase = Phase::initial;
+  return run.phase == Phase::initial;
 }
 
 bool is_prepared(Wheel& w) {
@@ -125,11 +127,9 @@ bool is_prepared(Wheel& w) {
 bool start(Wheel& w) {
   const bool exchanged = w.demand.kind == Kind::model_exchange;
   const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
-  InForce before;
-  before.scene = w.setup.scene;
   if (sound) {
     warn_of_paper_start(w);
-    log_changes(w, before);
+    log_changes(w, InForce(w.setup));
   }
   w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
   return sound;
@@ -142,14 +142,5 @@ void end_run(Wheel& w, Event event) {
 }
 
 void close(Wheel& w) { freeze(w, Phase::closed); }
-
-double value_of(Wheel& w, unsigned variable) {
-  if (variable < stored_count) return w.demand.value(variable);
-  if (!w.reading) {
-    w.reading.emplace(w);
-    if (w.demand.news != News::none) warn_of_jam(w, w.reading->scene, w.reading->y);
-  }
-  return row_of(variable).read(*w.reading);
-}
 
 }  // namespace wheel

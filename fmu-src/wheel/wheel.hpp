@@ -1,6 +1,9 @@
 // One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
-// as far as it is known; and its run from the parameters to the end. Each function that changes a wheel names in its
-// header what it writes. The run has a clock, zero at the start, so that a start time of 1e9 s costs no digits.
+// as far as it is known; and its run from the parameters to the end. The run has a clock, zero at the start, so that a
+// start time of 1e9 s costs no digits.
+//
+// A function changes nothing of a wheel that is passed as const, no solution of one that is passed as a Record, and
+// perhaps all of any other.
 //
 // The other files of this folder, each below those that it needs:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
@@ -18,18 +21,29 @@
 
 namespace wheel {
 
-struct Wheel;
+// All of a wheel but its solution: numbers that are copied and restored by assignment.
+struct Record {
+  explicit Record(Kind kind) : demand(kind) {}
+
+  Demand demand;
+  Setup setup = {};  // of the demand, from the first state on
+  Run run;
+
+  double time() const { return demand.start_time + run.t; }  // the caller's
+  bool has_ended() const { return run.ended_by != Event::none; }
+};
 
 // What can be read at one instant. Positions and velocities, and accelerations and reactions, are computed when they
 // are first asked for and kept; nothing is computed for an output that nobody reads. Fixed axes unless said.
-// The scene is that which holds for what follows the instant.
 struct Reading {
-  Reading() = default;
-  // The instant reached, with what was set since the last step. Writes run.y of the wheel.
-  explicit Reading(Wheel& wheel);
+  // (y: the state at the instant reached) => the reading there, where what was set since the last step is in force at
+  // once. The record stays where it is as long as the reading is in use.
+  Reading(const Record& record, const double* y);
 
   const Setup* setup;
-  WheelScene scene;
+  double t;          // s, clock of the run
+  InForce in_force;  // for what follows the instant
+  WheelScene scene;  // of it at t, with the ground by the sign of N
   double y[max_states];
   double x[WHEEL_EULER_STATES];  // model exchange: the states, from which y follows
   solver::Counters counters;
@@ -40,7 +54,7 @@ struct Reading {
     if (kinematics_) return *kinematics_;
     WheelKinematics& k = kinematics_.emplace();
     setup->exchanged ? wheel_euler_kinematics(&scene.wheel, x, &k)
-                     : formulation_of(*setup, scene).kinematics(&scene.wheel, y, &k);
+                     : formulation_of(*setup, scene.contact).kinematics(&scene.wheel, y, &k);
     return k;
   }
   const WheelDynamics& dynamics() {
@@ -62,56 +76,44 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-struct Wheel {
-  Wheel(const Reporter& to, Kind kind) : reporter(to), demand(kind) {}
+struct Wheel : Record {
+  Wheel(const Reporter& to, Kind kind) : Record(kind), reporter(to) {}
 
   const Reporter& reporter;
-  Demand demand;
-  Setup setup = {};  // of the demand, from the first state on
-  Run run;
   // The solution: steps of the solver, or the orbit of a wheel that is unfolded.
   solver::Solver solver;
   orbit::Orbit orbit;
-  Shape orbit_shape;              // for which `orbit` was built; it is entered where it is the present run's
-  const char* failure = nullptr;  // why the last step failed; null: see the solver
-  long long endings = 0;          // logged, of all runs since the last reset, those that a state led back from included
-  std::optional<Reading> reading;  // of the instant reached; dropped by each call that may change the wheel
-
-  double time() const { return demand.start_time + run.t; }  // the caller's
-  bool has_ended() const { return run.ended_by != Event::none; }
+  Shape orbit_shape;      // for which `orbit` was built; it is entered where it is the present run's
+  long long endings = 0;  // logged, of all runs since the last reset, those that a state led back from included
 };
 
 // (variable) => whether it is a rate of a carrier, and one that does not turn
 inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
-inline bool is_idle(const Wheel& wheel, unsigned variable) {
-  return is_guide_rate(variable) && is_running(wheel.run.phase) && !wheel.setup.steered();
+inline bool is_idle(const Record& record, unsigned variable) {
+  return is_guide_rate(variable) && is_running(record.run.phase) && !record.setup.steered();
 }
 
-// Whether what is in force acts on from the instant reached: nothing was set since the last step. An input that varied
-// in it stays where it arrived, but the carrier still turns as in the step.
-inline bool acts_on(const Wheel& wheel) {
-  return wheel.demand.news == News::none || (wheel.demand.news == News::stays && wheel.setup.steered());
+// The state at the instant reached, from the solution.
+void read_state(const Wheel& wheel, double* y);
+inline void update_state(Wheel& wheel) {
+  read_state(wheel, wheel.run.y);
+  wheel.run.y_time = wheel.run.t;
 }
 
-// (run.t) => state there, in run.y
-const double* state_now(Wheel& wheel);
-
-// The initial state from the present parameters, true if it exists. Else one message per fault. Writes setup, run,
-// demand.slides and demand.news.
-bool prepare(Wheel& wheel, const Reporter& reporter);
-
-// (y: a copy of run.y, whose slip it writes) => in force at the instant reached, with what was set since the last step
-InForce in_force_now(const Wheel& wheel, double* y);
+Reading read_now(const Wheel& wheel);
 
 // As new: start values, nothing computed.
 void reset(Wheel& wheel);
 // stop_time: infinite for none. tolerance <= 0: the default one.
 void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
 // Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange a
-// state too, and the law of friction is decided for it.
+// state too.
 void set(Wheel& wheel, unsigned variable, double value, int order = 0);
-// Before the end of the initialization: the initial state from the present parameters, where it has not been computed,
-// true if it exists. Else one message per fault, once.
+// The parameters are checked from here on.
+void begin_initialization(Wheel& wheel);
+// The initial state from the present parameters, true if it exists. Else one message per fault.
+bool prepare(Record& record, const Reporter& reporter);
+// Before the end of the initialization: `prepare` where it has not been done, with each message once.
 bool is_prepared(Wheel& wheel);
 // The end of initialization: false if there is no initial state.
 bool start(Wheel& wheel);
@@ -119,9 +121,5 @@ bool start(Wheel& wheel);
 void end_run(Wheel& wheel, Event event);
 // The caller ends the run.
 void close(Wheel& wheel);
-
-// Parameters and inputs as they were set; calculated variables at the instant reached, where what was set takes effect
-// at once.
-double value_of(Wheel& wheel, unsigned variable);
 
 }  // namespace wheel

@@ -21,7 +21,7 @@ struct Probe {
 
 double force(const Probe& probe, const double* y) {
   double y_dot[8];
-  return wheel_reduced.derivative(&probe.wheel.run.in_force.scene, y, y_dot);
+  return wheel_reduced.derivative(&probe.wheel.run.in_force.scene_at(0), y, y_dot);
 }
 
 // What Python adds to the rate of the state at `place`, or beyond the last to what is watched for an event: no wheel
