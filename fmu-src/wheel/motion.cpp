@@ -83,7 +83,8 @@ Outcome apply_demand(Wheel& w) {
 Shape shape_of(const Demand& demand) {
   Shape shape = {{}, demand.tolerance, demand.slides};
   std::copy_n(demand.parameters, first_input, shape.parameters);
-  for (const unsigned v : {variable::psi_start, variable::phi_start}) shape.parameters[v] = 0;
+  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
+    shape.parameters[v] = 0;
   return shape;
 }
 
@@ -95,15 +96,13 @@ bool enter_orbit(Wheel& w) {
   // a carrier that turned it at the start and not any more
   const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
-  orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
-  const bool known = w.orbit_shape == asked;
   const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
-  const bool entered = orbit.enter(motion, known, w.solver);
+  const bool entered = w.orbit.enter(motion, w.orbit_shape == asked, w.solver);
   w.run.in_force = at_start;
   w.orbit_shape = asked;
-  if (entered) w.run.counted = orbit.counters();
+  if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
 }
 
@@ -118,14 +117,13 @@ Outcome set_in_motion(Wheel& w) {
 
 // Logs what is observed on the orbit up to t.
 void observe_orbit(Wheel& w, double t) {
-  for (const EventRow& row : event_rows) {
-    const double first = w.orbit.first_time_of(static_cast<int>(row.event));
-    if (first <= t) observe(w, row.event, first);
-  }
+  for (const EventRow& row : event_rows)
+    if (const double first = w.orbit.course().first_times[static_cast<int>(row.event)]; first <= t)
+      observe(w, row.event, first);
 }
 
 void move_to(Wheel& w, double t) {
-  if (w.run.phase == Phase::unfolded && w.orbit.first_time() <= t) observe_orbit(w, t);
+  if (w.run.phase == Phase::unfolded && w.orbit.course().first_time <= t) observe_orbit(w, t);
   w.run.t = t;
 }
 
@@ -193,7 +191,7 @@ Outcome step_to(Wheel& w, double t) {
 Outcome proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return Outcome::stepped;
-  if (w.orbit.ends()) return Outcome::event;
+  if (w.orbit.course().ending) return Outcome::event;
   w.failure = "psi or phi would turn so far that the angle has too few digits";
   return Outcome::failed;
 }
@@ -213,7 +211,7 @@ void arrive(Wheel& w, double t) {
 void end(Wheel& w) {
   const bool unfolded = w.run.phase == Phase::unfolded;
   if (unfolded) move_to(w, w.orbit.until());
-  const auto event = static_cast<Event>(unfolded ? w.orbit.event() : w.solver.event());
+  const auto event = static_cast<Event>(unfolded ? *w.orbit.course().ending : w.solver.event());
   end_run(w, w.run.ended_by == Event::none ? event : w.run.ended_by);
 }
 
