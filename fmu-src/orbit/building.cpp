@@ -1,10 +1,10 @@
 // Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
-// form, non-spinning frame; path of O in fixed axes as X_O + i Y_O.
+// form, non-spinning frame.
 //
-// `build`, once for each motion: `is_steady` tries the start for a circle or a straight line; if it is neither,
-// `follow` steps past T1 and T2, and each step goes onto the track. `unfold` then takes the half and tests it. Both
-// rest on `maps`: the rates at the image of a state are the image of its rates. `begin`, once for each run: heading,
-// roll angle and place of the start, and whether the right-hand side depends on them.
+// `integrate`, once for each motion: `steady_course` tries the start for a circle or a straight line; if it is neither,
+// `stepped_course` steps past T1 and T2. Either is a nutation only if it `is_mirrored`. `Orbit::enter`, once for each
+// run: heading, roll angle and place of the start, and whether the right-hand side depends on them. Both tests rest on
+// `maps`: the rates at the image of a state are the image of its rates.
 #include "orbit.hpp"
 
 #include <algorithm>
@@ -24,7 +24,9 @@ CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every turn of the 
 CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may be the errors of a few steps");
 CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
 CONSTANT(double, largest_break, 0.1, "errors", "within the longest step, by what breaks the symmetry: rounding too");
-CONSTANT(int, samples, 8, "instants", "of a half, at which its symmetry is tested");
+CONSTANT(double, alike, 1e-5, "1", "by which watched functions may differ; rounding alone leaves 1e-14");
+CONSTANT(int, samples, 8, "instants", "at which a half is tested: what vanishes at all changes its sign eight times");
+CONSTANT(double, on_the_way, 0.4, "of T2", "no start, turning point or sample: there a break of symmetry may vanish");
 
 // A small lean of a wheel with omega_1 = 0, in which omega_2 and omega_3 follow theta as they do along a motion.
 struct Lean {
@@ -35,8 +37,8 @@ struct Lean {
 
 Lean lean_of(const solver::Problem& problem, const double* y0) {
   CONSTANT(double, lean_tried, 1e-4, "of sin(theta)", "small against the bend of the rates, large against rounding");
-  double y[Track::states], along[Track::states], rate[Track::states];
-  std::copy_n(y0, Track::states, y);
+  double y[states], along[states], rate[states];
+  std::copy_n(y0, states, y);
   y[WHEEL_OMEGA_1] = 1;
   problem.derivative(problem.owner, 0, y, along);
   y[WHEEL_OMEGA_1] = 0;
@@ -51,16 +53,14 @@ Lean lean_of(const solver::Problem& problem, const double* y0) {
   return {along[WHEEL_OMEGA_2], along[WHEEL_OMEGA_3], (behind - ahead) / (2 * h), ahead == 0 && behind == 0};
 }
 
-}  // namespace
-
-// (motion at t, its image at t_image, a map of rates) => whether the right-hand side at the image is the mapped one,
-// and every watched function is the same.
+// (motion at t, its image at t_image on the run of `entry`, a map of rates) => whether the right-hand side at the image
+// is the mapped one, and every watched function is the same.
 template <class Map>
-bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const Map& map) const {
-  CONSTANT(double, alike, 1e-5, "1", "watched functions that differ by less are the same");
+bool maps(const Nutation& nutation, const solver::Problem& problem, double t, const Entry& entry, double t_image,
+          const Map& map) {
   double y[states], image[states], expected[states], rate[states], weights[states];
-  read_integrated(t, y);
-  read(t_image, image);
+  nutation.course().read(t, y);
+  nutation.read(entry, t_image, image);
   problem.derivative(problem.owner, t, y, expected);
   map(expected);
   problem.derivative(problem.owner, t_image, image, rate);
@@ -74,92 +74,70 @@ bool Orbit::maps(const solver::Problem& problem, double t, double t_image, const
   });
 }
 
-bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
-  if (!known || result_ == Result::refused) build(motion, solver);
-  return result_ != Result::refused && begin(motion);
-}
-
-void Orbit::build(const FreeMotion& motion, solver::Solver& solver) {
-  const double tolerance = motion.tolerance;
-  solver::Problem problem = motion.problem;
-  double from_zero[states] = {};  // psi, phi, X_O and Y_O are zero
-  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) from_zero[i] = motion.y0[i];
-  problem.share = std::fmax(std::fmin(finer, loosest / tolerance), finest / tolerance);
-  problem.longest_step *= shortening;
-  *this = Orbit();
-  std::fill(std::begin(first_times_), std::end(first_times_), solver::never);
-  if (is_steady(problem, from_zero)) return;
-  result_ = follow(problem, motion.on_event, from_zero, solver);
-  counters_ = solver.counters();
-}
-
-bool Orbit::begin(const FreeMotion& motion) {
-  const double* y0 = motion.y0;
-  latest_half_ = {};
-  start_.psi_sum = y0[WHEEL_PSI];
-  start_.phi_sum = y0[WHEEL_PHI];
-  start_.place = place_of(y0);
-  start_.rotation = std::polar(1.0, y0[WHEEL_PSI]);
-  // On the way, since a straight line that starts where a watched function is the same may lead elsewhere.
-  const double t = 0.6 * T2_;
-  const auto turn = [&](double* rate) { set_place(rate, start_.rotation * place_of(rate)); };
-  if (!maps(motion.problem, t, t, turn)) return false;
-  until_ = ends() ? T2_ : motion.most_angle / (std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_)) / (T2_ - T1_));
-  return true;
-}
-
-// Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
-//   omega_1 changes its sign for the second time: unfolded, if the half is mirrored;
-//   the swing between both is no larger than errors: refused;
-//   an event ends the motion: ended;
-//   an event bends it, a step fails, or the track is full: refused.
-Orbit::Result Orbit::follow(const solver::Problem& problem, FreeMotion::OnEvent on_event, const double* y0,
-                            solver::Solver& solver) {
-  double y[states], weights[states], swing = 0, before = y0[WHEEL_OMEGA_1];
-  problem.weights(problem.owner, problem.share, y0, weights);
-  bool turned = before == 0;
-  if (!solver.start(problem, solver::Method::runge_kutta, 0, y0)) return Result::refused;
-  for (;;) {
-    const solver::Outcome outcome = step(problem, on_event, solver);
-    if (outcome == solver::Outcome::failed || !track_.add(solver.last_step())) return Result::refused;
-    solver.read(solver.known_until(), y);
-    if (y[WHEEL_OMEGA_1] != 0 && before != 0 && std::signbit(y[WHEEL_OMEGA_1]) != std::signbit(before)) {
-      T2_ = turning_point(problem, before, solver);
-      if (turned && swing * weights[WHEEL_OMEGA_1] < least_swing) return Result::refused;
-      if (turned) return unfold(problem, Result::unfolded) ? Result::unfolded : Result::refused;
-      T1_ = T2_;
-      turned = true;
-      swing = 0;
-    }
-    if (outcome == solver::Outcome::event) {
-      T2_ = solver.known_until();
-      event_ = solver.event();
-      return Result::ended;
-    }
-    if (y[WHEEL_OMEGA_1] != 0) before = y[WHEEL_OMEGA_1];
-    swing = std::fmax(swing, std::fabs(y[WHEEL_OMEGA_1]));
+// Whether the half from T1 to T2 represents the whole motion: as long after T2 as a state was before, the right-hand
+// side is its mirror image with time reversed.
+bool is_mirrored(const Nutation& nutation, const solver::Problem& problem) {
+  const Course& course = nutation.course();
+  const Entry from_zero;
+  for (int i = 0; i < samples; ++i) {
+    const double since = (i + 0.5) / samples * course.half_period(), t = course.T2 + since;
+    const auto mirror = [&](double* rate) {
+      for (const int k : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[k] = -rate[k];
+      set_place(rate, -nutation.half_of(from_zero, t).pose.rotation * std::conj(place_of(rate)));
+    };
+    if (!maps(nutation, problem, course.T2 - since, from_zero, t, mirror)) return false;
   }
+  return course.half_period() > 0;
+}
+
+// The circle or straight line of a start in steady motion: omega_1 = 0 except for rounding, a small lean swings instead
+// of growing, and no event occurs; or it leans without consequence. Then the initial state repeats for ever.
+std::optional<Course> steady_course(const solver::Problem& problem, const double* y0) {
+  CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
+  CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
+  const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 0.5 / problem.longest_step;
+  Circle circle;
+  std::copy_n(y0, states, circle.y0);
+  circle.y0[WHEEL_OMEGA_1] = 0;
+  problem.derivative(problem.owner, 0, y0, circle.rate);
+  double weights[states];
+  problem.weights(problem.owner, problem.share, y0, weights);
+  if (!(std::fabs(omega_1) * weights[WHEEL_OMEGA_1] < 1)) return {};
+  for (int i = 0; i < problem.watched_count; ++i)
+    if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return {};
+  const Lean lean = lean_of(problem, y0);
+  const double rate = circle.rate[WHEEL_OMEGA_1];
+  const double swing = std::fabs(rate) / lean.stiffness + std::fabs(omega_1) / std::sqrt(lean.stiffness);
+  const double most_weight = std::fmax(
+      weights[WHEEL_THETA],
+      std::fmax(std::fabs(lean.omega_2) * weights[WHEEL_OMEGA_2], std::fabs(lean.omega_3) * weights[WHEEL_OMEGA_3]));
+  const bool swings = lean.stiffness > least_stiffness * slowest * slowest && swing * most_weight < largest_steady;
+  if (!swings && !(omega_1 == 0 && rate == 0 && lean.indifferent)) return {};
+  Course course;
+  course.path = circle;
+  course.T2 = std::fmin(problem.longest_step, piece / std::fabs(circle.rate[WHEEL_PSI]));
+  return course;
 }
 
 // (solver) => stepped to the end of a step, past the events after which the motion goes on
-solver::Outcome Orbit::step(const solver::Problem& problem, FreeMotion::OnEvent on_event, solver::Solver& solver) {
+solver::Outcome step(const FreeMotion& motion, solver::Solver& solver, Course& course) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
     if (outcome != solver::Outcome::event) return outcome;
+    const double t = solver.known_until();
     double y[states];
-    solver.read(solver.known_until(), y);
-    const solver::Consequence consequence = on_event(problem.owner, solver.event(), solver.known_until(), y);
+    solver.read(t, y);
+    const solver::Consequence consequence = motion.on_event(motion.problem.owner, solver.event(), t, y);
     if (consequence == solver::Consequence::ends) return outcome;
     if (consequence == solver::Consequence::bends) return solver::Outcome::failed;
-    const double t = solver.known_until();
-    first_time_ = std::fmin(first_time_, t);
-    first_times_[solver.event()] = std::fmin(first_times_[solver.event()], t);
+    course.first_time = std::fmin(course.first_time, t);
+    course.first_times[solver.event()] = std::fmin(course.first_times[solver.event()], t);
     solver.resume();
   }
 }
 
 // (last step) => instant at which omega_1 falls through zero, seen from the side of `before`, on which the step begins
-double Orbit::turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
+double turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
   const auto value = [](void*, int side, double, const double* y) { return side * y[WHEEL_OMEGA_1]; };
   const solver::Watched watched = {before > 0 ? 1 : -1, value, false, WHEEL_OMEGA_1};
   const double end = solver.known_until();
@@ -168,54 +146,69 @@ double Orbit::turning_point(const solver::Problem& problem, double before, solve
   return search.find_first_fall(search.sample(solver.step_start()), search.sample(end)).value_or(end);
 }
 
-// Whether the half from T1 to T2 represents the whole motion.
-bool Orbit::unfold(const solver::Problem& problem, Result kind) {
-  result_ = kind;
-  take_half();
-  for (int i = 0; i < samples; ++i)
-    if (!is_mirrored(problem, (i + 0.5) / samples * (T2_ - T1_))) return false;
-  return T2_ > T1_;
+// Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
+//   omega_1 changes its sign for the second time: unfolded, or none if the swing between both is no larger than errors;
+//   an event ends the motion: ended;
+//   an event bends it, a step fails, or the track is full: none.
+std::optional<Course> stepped_course(const FreeMotion& motion, solver::Solver& solver) {
+  const solver::Problem& problem = motion.problem;
+  double y[states], weights[states], swing = 0, before = motion.y0[WHEEL_OMEGA_1];
+  problem.weights(problem.owner, problem.share, motion.y0, weights);
+  if (!solver.start(problem, solver::Method::runge_kutta, 0, motion.y0)) return {};
+  Course course;
+  Track& track = *std::get_if<Track>(&course.path);
+  std::optional<double> T1 = before == 0 ? std::optional(0.0) : std::nullopt;
+  for (;;) {
+    const solver::Outcome outcome = step(motion, solver, course);
+    if (outcome == solver::Outcome::failed || !track.add(solver.last_step())) return {};
+    solver.read(solver.known_until(), y);
+    const double now = y[WHEEL_OMEGA_1];
+    if (now != 0 && before != 0 && std::signbit(now) != std::signbit(before)) {
+      course.T2 = turning_point(problem, before, solver);
+      if (T1 && swing * weights[WHEEL_OMEGA_1] < least_swing) return {};
+      if (T1) break;
+      T1 = course.T1 = course.T2;
+      swing = 0;
+    }
+    if (outcome == solver::Outcome::event) {
+      course.T2 = solver.known_until();
+      course.ending = solver.event();
+      break;
+    }
+    if (now != 0) before = now;
+    swing = std::fmax(swing, std::fabs(now));
+  }
+  course.counters = solver.counters();
+  return course;
 }
 
-// Whether the right-hand side, as long after T2 as the state was before, is the mirror image with time reversed.
-bool Orbit::is_mirrored(const solver::Problem& problem, double since) const {
-  return maps(problem, T2_ - since, T2_ + since, [&](double* rate) {
-    for (const int i : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[i] = -rate[i];
-    set_place(rate, -half_of(T2_ + since).rotation * std::conj(place_of(rate)));
-  });
+// From zeros in psi, phi, X_O and Y_O. None where the motion is refused.
+std::optional<Nutation> integrate(const FreeMotion& given, solver::Solver& solver) {
+  double y0[states] = {};
+  for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y0[i] = given.y0[i];
+  FreeMotion motion = given;
+  motion.y0 = y0;
+  motion.problem.share = std::fmax(std::fmin(finer, loosest / given.tolerance), finest / given.tolerance);
+  motion.problem.longest_step *= shortening;
+  std::optional<Course> course = steady_course(motion.problem, y0);
+  if (!course) course = stepped_course(motion, solver);
+  if (!course) return {};
+  Nutation nutation(std::move(*course));
+  if (!nutation.course().ending && !is_mirrored(nutation, motion.problem)) return {};
+  return nutation;
 }
 
-// Whether the wheel is in steady motion: omega_1 = 0 except for rounding, and a small lean swings instead of growing,
-// and no event occurs; or it leans without consequence. Then the initial state repeats for ever.
-bool Orbit::is_steady(const solver::Problem& problem, const double* y0) {
-  CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
-  CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
-  const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 0.5 / problem.longest_step;
-  double rate[states], weights[states];
-  problem.derivative(problem.owner, 0, y0, rate);
-  problem.weights(problem.owner, problem.share, y0, weights);
-  if (!(std::fabs(omega_1) * weights[WHEEL_OMEGA_1] < 1)) return false;
-  for (int i = 0; i < problem.watched_count; ++i)
-    if (problem.watched[i].value(problem.owner, problem.watched[i].event, 0, y0) < 0) return false;
-  const Lean lean = lean_of(problem, y0);
-  if (omega_1 == 0 && rate[WHEEL_OMEGA_1] == 0 && lean.indifferent)
-    return keep_steady(problem, y0, rate, problem.longest_step);
-  if (!(lean.stiffness > least_stiffness * slowest * slowest)) return false;
-  const double swing = std::fabs(rate[WHEEL_OMEGA_1]) / lean.stiffness + std::fabs(omega_1) / std::sqrt(lean.stiffness);
-  const double most_weight = std::fmax(
-      weights[WHEEL_THETA],
-      std::fmax(std::fabs(lean.omega_2) * weights[WHEEL_OMEGA_2], std::fabs(lean.omega_3) * weights[WHEEL_OMEGA_3]));
-  if (!(swing * most_weight < largest_steady)) return false;
-  return keep_steady(problem, y0, rate, std::fmin(problem.longest_step, piece / std::fabs(rate[WHEEL_PSI])));
-}
+}  // namespace
 
-// Keeps the circle (or straight line) of a steady motion, of which any piece is a half: that of this length, s.
-bool Orbit::keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length) {
-  T2_ = length;
-  std::copy_n(y0, states, at_T1_);
-  at_T1_[WHEEL_OMEGA_1] = 0;
-  std::copy_n(rate, states, steady_rate_);
-  return unfold(problem, Result::steady);
+bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
+  leave();
+  if (!known || !nutation_) nutation_ = integrate(motion, solver);
+  if (!nutation_) return false;
+  const Entry entry = nutation_->entry_at(motion.y0, motion.most_angle);
+  const double t = on_the_way * nutation_->course().T2;
+  const auto turn = [&](double* rate) { set_place(rate, entry.start.rotation * place_of(rate)); };
+  if (maps(*nutation_, motion.problem, t, entry, t, turn)) entry_ = entry;
+  return is_entered();
 }
 
 }  // namespace orbit

@@ -17,23 +17,52 @@
 //       |  .           .  .            .        T2 to T3:   its mirror image about T2, turned and displaced
 //       +--0-----------T2----------------- t    from T3 on: images of images, L each
 //
-// State of the reduced form (wheel_equations.h). Time in s, zero at the start.
+// From the question to the answer, each type written in one place and constant from then on:
+//
+//   FreeMotion   by the owner: the problem and its start
+//   Course       by stepping along it (building.cpp): the integrated motion, in a frame of its own
+//   Nutation     by its constructor, of a course: the terms from which any other half follows
+//   Entry        by Orbit::enter: the run on a nutation, from its own heading, roll angle and place
+//
+// State of the reduced form (wheel_equations.h). Time in s, zero at the start. Path of O as X_O + i Y_O.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstdlib>
 #include <memory>
+#include <optional>
+#include <variant>
 
 #include "solver.hpp"
 #include "wheel_equations.h"
 
 namespace orbit {
 
-// A motion that was integrated once, kept to be read at any instant: the polynomials of its steps.
+using Complex = std::complex<double>;
+inline constexpr int states = WHEEL_REDUCED_STATES;
+
+inline Complex place_of(const double* y) { return {y[WHEEL_X_O], y[WHEEL_Y_O]}; }
+inline void set_place(double* y, Complex place) {
+  y[WHEEL_X_O] = place.real();
+  y[WHEEL_Y_O] = place.imag();
+}
+
+// A motion to be unfolded: a problem of the reduced form of a wheel, its start, and how far it may be read.
+struct FreeMotion {
+  solver::Problem problem;
+  double tolerance;
+  // What follows from an event at t and y, for the owner to decide; where the motion bends it cannot be unfolded. The
+  // owner may answer `problem` otherwise from then on, as to which side of a limit is watched: it puts back itself,
+  // after `enter`, what it changes for that.
+  solver::Consequence (*on_event)(void* owner, int event, double t, double* y);
+  const double* y0;
+  double most_angle;  // rad, by which psi or phi may turn
+};
+
+// The polynomials of the steps of a motion.
 class Track {
  public:
-  static constexpr int states = WHEEL_REDUCED_STATES;
-
   // The next step, with its polynomial; false where the track is full or there is no memory for it.
   bool add(const solver::Step& step);
 
@@ -52,112 +81,102 @@ class Track {
   mutable int latest_ = 0;  // the piece read last
 };
 
-// A motion to be unfolded: a problem of the reduced form of a wheel, its start, and how far it may be read.
-struct FreeMotion {
-  // What follows from an event at t and y, for the owner to decide. Where the motion bends it cannot be unfolded.
-  using OnEvent = solver::Consequence (*)(void* owner, int event, double t, double* y);
+// Steady motion: a circle or a straight line, of which any piece is a half.
+struct Circle {
+  double y0[states], rate[states];  // at the start, where psi, phi and place are zero
 
-  solver::Problem problem;
-  double tolerance;
-  OnEvent on_event;
-  const double* y0;
-  double most_angle;  // rad, by which psi or phi may turn
+  void read(double t, double* y) const;
 };
 
-// enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
-class Orbit {
- public:
-  // unfolded: the motion never ends.
-  // steady: a circle or a straight line for ever.
-  // ended: by event(), in the first nutation.
-  // refused: no two turning points within a fixed number of steps, a swing no larger than errors, or rates
-  //   that have not the symmetry. The caller then steps through the motion from its start.
-  enum class Result { refused, unfolded, steady, ended };
+// The integrated motion: psi, phi, X_O and Y_O are zero at its start.
+struct Course {
+  Course() { first_times.fill(solver::never); }
 
-  // Integrates the motion by DOP853, unless it is `known`: the one integrated last, but for psi, phi and place of its
-  // start. The solver has to be started anew before anything else is asked of it. The integrated motion is a function
-  // of problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
-  // heading. False where the motion is refused, or the right-hand side depends on heading, roll angle or place.
-  bool enter(const FreeMotion& motion, bool known, solver::Solver& solver);
-  void leave() { until_ = nowhere; }
-
-  // (0 <= t <= until()) => y
-  void read(double t, double* y) const;
-  double until() const { return until_; }  // s
-  bool is_entered() const { return until_ != nowhere; }
-  Result result() const { return result_; }
-  bool ends() const { return result_ == Result::ended; }
-  int event() const { return event_; }
-  // What the integration took; zero for a wheel in steady motion.
-  const solver::Counters& counters() const { return counters_; }
-  double half_period() const { return T2_ - T1_; }  // s, of theta's nutation; unfolded only
-
-  // s, when an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
+  std::variant<Track, Circle> path;  // from the start past T2
+  double T1 = 0, T2 = 0;
+  std::optional<int> ending;  // the event that ends the motion at T2, in its first nutation; none: it never ends
+  // When an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
   // each mirror image.
-  double first_time_of(int event) const { return first_times_[event]; }
-  double first_time() const { return first_time_; }
+  std::array<double, solver::max_watched + 1> first_times;
+  double first_time = solver::never;
+  solver::Counters counters = {};  // of the integration; zero for a wheel in steady motion
+
+  bool is_steady() const { return std::holds_alternative<Circle>(path); }
+  double half_period() const { return T2 - T1; }  // s, of theta's nutation
+  // (0 <= t <= T2, of a steady motion any t) => y in the frame of the course
+  void read(double t, double* y) const;
+};
+
+// How a part of the course lies in fixed axes: what is added to its psi and phi, where its path begins, and how far the
+// path is turned.
+struct Pose {
+  double psi = 0, phi = 0;
+  Complex place = 0, rotation = 1;
+
+  // (y in the frame of the course, way of O from the beginning of the part) => y in fixed axes
+  void carry(Complex way, double* y) const;
+};
+
+// The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
+struct Half {
+  double begin = 0, next = 0;
+  bool mirrored = false;
+  Pose pose = {};
+};
+
+// A run on a nutation, or none.
+struct Entry {
+  Pose start = {};
+  double until = -1;         // s, how far it can be read; below zero: there is none
+  mutable Half latest = {};  // the half read last, a function of its number alone
+};
+
+class Nutation {
+ public:
+  explicit Nutation(Course&& course);
+
+  const Course& course() const { return course_; }
+  // (start of a run, rad by which psi or phi may turn) => the run
+  Entry entry_at(const double* y0, double most_angle) const;
+  // (0 <= t <= until) => y
+  void read(const Entry& entry, double t, double* y) const;
+  const Half& half_of(const Entry& entry, double t) const;
 
  private:
-  static constexpr double nowhere = -solver::never;
-  using Complex = std::complex<double>;
-  static constexpr int states = Track::states;
-  static Complex place_of(const double* y) { return {y[WHEEL_X_O], y[WHEEL_Y_O]}; }
-  static void set_place(double* y, Complex place) {
-    y[WHEEL_X_O] = place.real();
-    y[WHEEL_Y_O] = place.imag();
-  }
+  double begin_of(double k) const { return course_.T1 + k * course_.half_period(); }
+  Half half_at(double k, const Pose& start) const;
 
-  // The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1: where O begins, and how far the integrated path,
-  // psi and phi are turned.
-  struct Half {
-    double begin = 0, next = 0;
-    bool mirrored = false;
-    double psi_sum = 0, phi_sum = 0;
-    Complex place = 0, rotation = 1;
-  };
-
-  // building.cpp: `build` integrates, `begin` places the start
-  void build(const FreeMotion& motion, solver::Solver& solver);
-  bool begin(const FreeMotion& motion);
-  template <class Map>
-  bool maps(const solver::Problem& problem, double t, double t_image, const Map& map) const;
-  bool is_steady(const solver::Problem& problem, const double* y0);
-  bool keep_steady(const solver::Problem& problem, const double* y0, const double* rate, double length);
-  Result follow(const solver::Problem& problem, FreeMotion::OnEvent on_event, const double* y0, solver::Solver& solver);
-  solver::Outcome step(const solver::Problem& problem, FreeMotion::OnEvent on_event, solver::Solver& solver);
-  static double turning_point(const solver::Problem& problem, double before, solver::Solver& solver);
-  bool unfold(const solver::Problem& problem, Result kind);
-  bool is_mirrored(const solver::Problem& problem, double since) const;
-  // orbit.cpp
-  void take_half();
-  void read_circle(double t, double* y) const;
-  void read_integrated(double t, double* y) const;
-  static void to_fixed(const Half& half, Complex way, double* y);
-
-  double begin_of(double k) const { return T1_ + k * (T2_ - T1_); }
-  Half half_at(double k) const;
-  const Half& half_of(double t) const;
-
-  // Written by `build`: the integrated motion, in its own frame.
-  Result result_ = Result::refused;
-  Track track_;                                                               // from the start past T2
-  double steady_rate_[states] = {};                                           // steady motion: at the start
-  double T1_ = 0, T2_ = 0;                                                    // T2: where the motion ends, if it does
-  int event_ = 0;                                                             // by which it ends
-  double first_times_[solver::max_watched + 1], first_time_ = solver::never;  // s; by event
-  solver::Counters counters_ = {};
-  // By `take_half`, of the half from T1 to T2: its ends, and the terms of the sums over halves.
+  Course course_;
+  // Of the half from T1 to T2, unless the motion ends: its ends, and the terms of the sums over halves.
   double at_T1_[states] = {}, at_T2_[states] = {};
   double psi_growth_ = 0, phi_growth_ = 0;    // rad, from T1 to T2
   double delta_ = 0;                          // that of psi less the nearest multiple of pi
   double pair_ = 0;                           // factor of the sum over pairs of halves
   Complex rotation_at_T1_, mirror_rotation_;  // exp(i psi(T1)), exp(2 i psi(T2))
   Complex displacement_;                      // from O(T1) to O(T2), seen along psi(T1)
-  // By `begin`: psi, phi and place of the start, from which the motion up to T2 is seen; how far it can be read.
-  Half start_;
-  double until_ = nowhere;
-  // By `half_of`: the half read last, a function of its number alone.
-  mutable Half latest_half_;
+};
+
+// enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
+class Orbit {
+ public:
+  // Integrates the motion by DOP853, unless it is `known`: the one integrated last, but for psi, phi and place of its
+  // start. The solver has to be started anew before anything else is asked of it. The nutation is a function of
+  // problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
+  // heading. False, and the orbit is left, where the motion is refused: no two turning points within a fixed number of
+  // steps, a swing no larger than errors, rates that have not the symmetry, or that depend on heading, roll angle or
+  // place. The caller then steps through the motion from its start.
+  bool enter(const FreeMotion& motion, bool known, solver::Solver& solver);
+  void leave() { entry_ = {}; }
+
+  bool is_entered() const { return entry_.until >= 0; }
+  double until() const { return entry_.until; }
+  // Of an orbit that is entered.
+  const Course& course() const { return nutation_->course(); }
+  void read(double t, double* y) const { nutation_->read(entry_, t, y); }
+
+ private:
+  std::optional<Nutation> nutation_;  // of the motion integrated last; none: it was refused
+  Entry entry_;                       // on it, of the present run
 };
 
 }  // namespace orbit

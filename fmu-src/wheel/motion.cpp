@@ -74,7 +74,8 @@ Result apply_demand(Wheel& w) {
 Shape shape_of(const Demand& demand) {
   Shape shape = {{}, demand.tolerance, demand.slides};
   std::copy_n(demand.parameters, first_input, shape.parameters);
-  for (const unsigned v : {variable::psi_start, variable::phi_start}) shape.parameters[v] = 0;
+  for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
+    shape.parameters[v] = 0;
   return shape;
 }
 
@@ -86,15 +87,13 @@ bool enter_orbit(Wheel& w) {
   // a carrier that turned it at the start and not any more
   const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
-  orbit::Orbit& orbit = w.orbit;
   const Shape asked = shape_of(w.demand);
-  const bool known = w.orbit_shape == asked;
   const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
-  const bool entered = orbit.enter(motion, known, w.solver);
+  const bool entered = w.orbit.enter(motion, w.orbit_shape == asked, w.solver);
   w.run.in_force = at_start;
   w.orbit_shape = asked;
-  if (entered) w.run.counted = orbit.counters();
+  if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
 }
 
@@ -110,9 +109,9 @@ Result set_in_motion(Wheel& w) {
 // The run goes on to t. What is observed on the orbit is logged where it first occurs.
 void move_to(Wheel& w, double t) {
   w.run.t = t;
-  if (w.run.phase != Phase::unfolded || w.orbit.first_time() > t) return;
+  if (w.run.phase != Phase::unfolded || w.orbit.course().first_time > t) return;
   for (const EventRow& row : event_rows)
-    if (const double first = w.orbit.first_time_of(static_cast<int>(row.event)); first <= t)
+    if (const double first = w.orbit.course().first_times[static_cast<int>(row.event)]; first <= t)
       observe(w, row.event, first);
 }
 
@@ -178,10 +177,10 @@ Result step_to(Wheel& w, double t) {
 Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return {};
-  if (!w.orbit.ends())
+  if (!w.orbit.course().ending)
     return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
   move_to(w, w.orbit.until());
-  return {Outcome::event, static_cast<Event>(w.orbit.event())};
+  return {Outcome::event, static_cast<Event>(*w.orbit.course().ending)};
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless

@@ -68,8 +68,8 @@ struct Reading {
   std::optional<WheelDynamics> dynamics_ = {};
 };
 
-// What shapes the motion on an orbit: the parameters without heading and roll angle of the start, which are zero here,
-// and the tolerance.
+// What shapes the motion on an orbit: the parameters without heading, roll angle and place of the start, which are zero
+// here, and the tolerance.
 struct Shape {
   double parameters[first_input] = {}, tolerance = 0;
   bool slides = false;

@@ -1,7 +1,9 @@
 // One free wheel and its orbit behind a C interface, for ctypes. State and units as in wheel_equations.h.
+#include <algorithm>
 #include <new>
 
 #include "law.hpp"
+#include "motion.hpp"
 #include "posed_problem.hpp"
 
 #ifdef _WIN32
@@ -68,7 +70,7 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
 
 PUBLIC void probe_free(Probe* probe) { delete probe; }
 
-// A number of Orbit::Result, 0 where it is refused. `by`: a disturbance, or null.
+// Place in KINDS of unfolded.py. `by`: a disturbance, or null.
 PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   const wheel::InForce at_start = probe->wheel.run.in_force;
   solver::Problem problem = wheel::problem_of(probe->wheel);
@@ -78,7 +80,9 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   const orbit::FreeMotion motion = {problem, setup.tolerance, wheel::follow_on_orbit, setup.start, solver::never};
   const bool entered = probe->orbit.enter(motion, false, probe->solver);
   probe->wheel.run.in_force = at_start;
-  return entered ? static_cast<int>(probe->orbit.result()) : 0;
+  if (!entered) return 0;
+  const orbit::Course& course = probe->orbit.course();
+  return course.ending ? 3 : course.is_steady() ? 2 : 1;
 }
 
 // States at `count` instants, 8 numbers each, psi, phi, X_O and Y_O whole; and N.
@@ -93,9 +97,23 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
   }
 }
 
-PUBLIC double probe_half_period(Probe* probe) { return probe->orbit.half_period(); }
+// The state at t of a new run of the wheel, with another value of a parameter; and the steps that the solver took for
+// it, negative where the run failed.
+PUBLIC long long probe_run(Probe* probe, unsigned reference, double value, double t, double* y) {
+  wheel::Wheel& wheel = probe->wheel;
+  wheel.demand.parameters[reference] = value;
+  const bool sound = wheel::start(wheel) &&
+                     probe->solver.start(wheel::problem_of(wheel), solver::Method::runge_kutta, 0, wheel.setup.start);
+  if (!sound || wheel::advance(wheel, t) != solver::Outcome::stepped) return -1;
+  std::copy_n(wheel::state_now(wheel), 8, y);
+  return probe->solver.counters().steps;
+}
+
+PUBLIC double probe_half_period(Probe* probe) {
+  return probe->orbit.is_entered() ? probe->orbit.course().half_period() : 0;
+}
 // Of N, the only event after which the motion goes on.
 PUBLIC double probe_first_fall(Probe* probe) {
-  return probe->orbit.first_time_of(static_cast<int>(wheel::Event::lost_contact));
+  return probe->orbit.course().first_times[static_cast<int>(wheel::Event::lost_contact)];
 }
 PUBLIC long long probe_steps(Probe* probe) { return probe->solver.counters().steps; }

@@ -27,7 +27,7 @@ class Orbit:
     """One free wheel, built at once; `kind` is what came of it."""
 
     # Of probe.cpp, by the names after `probe_`.
-    RESULTS = {"make": c_void_p, "steps": c_longlong}
+    RESULTS = {"make": c_void_p, "steps": c_longlong, "run": c_longlong}
     RESULTS |= dict.fromkeys(("half_period", "first_fall"), c_double)
 
     def __init__(self, library: ctypes.CDLL, wheel=None, start=None, tolerance=1e-8, keep_contact=False) -> None:
@@ -59,6 +59,12 @@ class Orbit:
 
     def __call__(self, t: Array | list[float]) -> Array:
         return self.read(t)[0]
+
+    def run(self, name: str, value: float, t: float) -> tuple[int, Array]:
+        """A new run of the wheel with another value of a parameter: the steps that the solver takes, the state at t."""
+        y = np.empty(8)
+        at = c_uint(REFERENCES[name]), c_double(value), c_double(t), c_void_p(y.ctypes.data)
+        return self.library.probe_run(self.probe, *at), y
 
     def first_fall(self) -> float:
         """The instant at which N first falls below zero, or infinity."""
