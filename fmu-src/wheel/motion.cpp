@@ -91,16 +91,15 @@ Shape shape_of(const Demand& demand) {
 // Whether the motion repeats and is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same
 // shape. False: the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
-  const InForce& now = w.run.in_force;
+  const InForce now = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const bool acted_on = now.scene.friction.kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
   // a carrier that turned it at the start and not any more
   const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   const Shape asked = shape_of(w.demand);
-  const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
   const bool entered = w.orbit.enter(motion, w.orbit_shape == asked, w.solver);
-  w.run.in_force = at_start;
+  w.run.in_force = now;
   w.orbit_shape = asked;
   if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
@@ -108,8 +107,7 @@ bool enter_orbit(Wheel& w) {
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
 Outcome set_in_motion(Wheel& w) {
-  const bool is_ready = w.run.phase == Phase::unfolded && w.orbit.is_entered();
-  if (w.run.phase == Phase::stepping || is_ready) return Outcome::stepped;
+  if (is_known(w, w.run.t)) return Outcome::stepped;
   if (!enter_orbit(w)) return start_solver(w);
   w.run.phase = Phase::unfolded;
   return Outcome::stepped;
@@ -211,7 +209,7 @@ void arrive(Wheel& w, double t) {
 void end(Wheel& w) {
   const bool unfolded = w.run.phase == Phase::unfolded;
   if (unfolded) move_to(w, w.orbit.until());
-  const auto event = static_cast<Event>(unfolded ? *w.orbit.course().ending : w.solver.event());
+  const auto event = static_cast<Event>(unfolded ? w.orbit.course().ending.value_or(0) : w.solver.event());
   end_run(w, w.run.ended_by == Event::none ? event : w.run.ended_by);
 }
 
