@@ -2,7 +2,7 @@
 // form, non-spinning frame.
 //
 // `integrate`, once for each motion: `steady_course` tries the start for a circle or a straight line; if it is neither,
-// `stepped_course` steps past T1 and T2. Either is a nutation only if it `is_mirrored`. `Orbit::enter`, once for each
+// `stepped_course` steps past T1 and T2. `is_mirrored` tests a course that does not end. `Orbit::enter`, once for each
 // run: heading, roll angle and place of the start, and whether the right-hand side depends on them. Both tests rest on
 // `maps`: the rates at the image of a state are the image of its rates.
 #include "orbit.hpp"
@@ -13,7 +13,6 @@
 #include "constant.hpp"
 
 namespace orbit {
-
 namespace {
 
 CONSTANT(double, finer, 0.05, "of the tolerance", "of the integrated half, whose error is added once for every half");
@@ -92,7 +91,7 @@ bool is_mirrored(const Nutation& nutation, const solver::Problem& problem) {
 
 // The circle or straight line of a start in steady motion: omega_1 = 0 except for rounding, a small lean swings instead
 // of growing, and no event occurs; or it leans without consequence. Then the initial state repeats for ever.
-std::optional<Course> steady_course(const solver::Problem& problem, const double* y0) {
+Course steady_course(const solver::Problem& problem, const double* y0) {
   CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
   CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
   const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 0.5 / problem.longest_step;
@@ -150,13 +149,13 @@ double turning_point(const solver::Problem& problem, double before, solver::Solv
 //   omega_1 changes its sign for the second time: unfolded, or none if the swing between both is no larger than errors;
 //   an event ends the motion: ended;
 //   an event bends it, a step fails, or the track is full: none.
-std::optional<Course> stepped_course(const FreeMotion& motion, solver::Solver& solver) {
+Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
   const solver::Problem& problem = motion.problem;
   double y[states], weights[states], swing = 0, before = motion.y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, motion.y0, weights);
   if (!solver.start(problem, solver::Method::runge_kutta, 0, motion.y0)) return {};
   Course course;
-  Track& track = *std::get_if<Track>(&course.path);
+  Track& track = course.path.emplace<Track>();
   std::optional<double> T1 = before == 0 ? std::optional(0.0) : std::nullopt;
   for (;;) {
     const solver::Outcome outcome = step(motion, solver, course);
@@ -183,17 +182,17 @@ std::optional<Course> stepped_course(const FreeMotion& motion, solver::Solver& s
 }
 
 // From zeros in psi, phi, X_O and Y_O. None where the motion is refused.
-std::optional<Nutation> integrate(const FreeMotion& given, solver::Solver& solver) {
+Nutation integrate(const FreeMotion& given, solver::Solver& solver) {
   double y0[states] = {};
   for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y0[i] = given.y0[i];
   FreeMotion motion = given;
   motion.y0 = y0;
   motion.problem.share = std::fmax(std::fmin(finer, loosest / given.tolerance), finest / given.tolerance);
   motion.problem.longest_step *= shortening;
-  std::optional<Course> course = steady_course(motion.problem, y0);
-  if (!course) course = stepped_course(motion, solver);
-  if (!course) return {};
-  Nutation nutation(std::move(*course));
+  Course course = steady_course(motion.problem, y0);
+  if (!course.exists()) course = stepped_course(motion, solver);
+  if (!course.exists()) return {};
+  Nutation nutation(std::move(course));
   if (!nutation.course().ending && !is_mirrored(nutation, motion.problem)) return {};
   return nutation;
 }
@@ -202,13 +201,13 @@ std::optional<Nutation> integrate(const FreeMotion& given, solver::Solver& solve
 
 bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
   leave();
-  if (!known || !nutation_) nutation_ = integrate(motion, solver);
-  if (!nutation_) return false;
-  const Entry entry = nutation_->entry_at(motion.y0, motion.most_angle);
-  const double t = on_the_way * nutation_->course().T2;
+  if (!known || !course().exists()) nutation_ = integrate(motion, solver);
+  if (!course().exists()) return false;
+  const Entry entry = nutation_.entry_at(motion.y0, motion.most_angle);
+  const double t = on_the_way * course().T2;
   const auto turn = [&](double* rate) { set_place(rate, entry.start.rotation * place_of(rate)); };
-  if (maps(*nutation_, motion.problem, t, entry, t, turn)) entry_ = entry;
-  return is_entered();
+  if (maps(nutation_, motion.problem, t, entry, t, turn)) entry_ = entry;
+  return until() >= 0;
 }
 
 }  // namespace orbit

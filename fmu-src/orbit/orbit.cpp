@@ -40,8 +40,8 @@ void Circle::read(double t, double* y) const {
 }
 
 void Course::read(double t, double* y) const {
-  const Circle* const circle = std::get_if<Circle>(&path);
-  circle ? circle->read(t, y) : std::get_if<Track>(&path)->read(t, y);
+  if (const Track* const track = std::get_if<Track>(&path)) return track->read(t, y);
+  if (const Circle* const circle = std::get_if<Circle>(&path)) circle->read(t, y);
 }
 
 void Pose::carry(Complex way, double* y) const {

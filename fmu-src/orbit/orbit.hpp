@@ -88,11 +88,11 @@ struct Circle {
   void read(double t, double* y) const;
 };
 
-// The integrated motion: psi, phi, X_O and Y_O are zero at its start.
+// The integrated motion: psi, phi, X_O and Y_O are zero at its start. Without a path: none.
 struct Course {
   Course() { first_times.fill(solver::never); }
 
-  std::variant<Track, Circle> path;  // from the start past T2
+  std::variant<std::monostate, Track, Circle> path;  // from the start past T2
   double T1 = 0, T2 = 0;
   std::optional<int> ending;  // the event that ends the motion at T2, in its first nutation; none: it never ends
   // When an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
@@ -101,7 +101,7 @@ struct Course {
   double first_time = solver::never;
   solver::Counters counters = {};  // of the integration; zero for a wheel in steady motion
 
-  bool is_steady() const { return std::holds_alternative<Circle>(path); }
+  bool exists() const { return !std::holds_alternative<std::monostate>(path); }
   double half_period() const { return T2 - T1; }  // s, of theta's nutation
   // (0 <= t <= T2, of a steady motion any t) => y in the frame of the course
   void read(double t, double* y) const;
@@ -133,6 +133,7 @@ struct Entry {
 
 class Nutation {
  public:
+  Nutation() = default;  // of no course
   explicit Nutation(Course&& course);
 
   const Course& course() const { return course_; }
@@ -168,15 +169,15 @@ class Orbit {
   bool enter(const FreeMotion& motion, bool known, solver::Solver& solver);
   void leave() { entry_ = {}; }
 
-  bool is_entered() const { return entry_.until >= 0; }
+  // s; below zero where the orbit is left
   double until() const { return entry_.until; }
   // Of an orbit that is entered.
-  const Course& course() const { return nutation_->course(); }
-  void read(double t, double* y) const { nutation_->read(entry_, t, y); }
+  const Course& course() const { return nutation_.course(); }
+  void read(double t, double* y) const { nutation_.read(entry_, t, y); }
 
  private:
-  std::optional<Nutation> nutation_;  // of the motion integrated last; none: it was refused
-  Entry entry_;                       // on it, of the present run
+  Nutation nutation_;  // of the motion integrated last; of no course where that was refused
+  Entry entry_;        // on it, of the present run
 };
 
 }  // namespace orbit

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "constant.hpp"
 #include "events.hpp"
@@ -21,6 +22,12 @@ CONSTANT(long long, most_work, 1000000, "internal steps", "of one call, however 
 CONSTANT(long long, work_per_event, 20, "internal steps", "the search for it, a new start, the short steps after it");
 CONSTANT(unsigned, evaluations_per_step, 16, "evaluations", "that count as one internal step");
 CONSTANT(long long, work_per_multibody_step, 8, "internal steps", "of the multibody form, whose system is larger");
+
+// Whether the solution is known up to t.
+bool is_known(const Wheel& w, double t) {
+  if (w.run.phase == Phase::stepping) return w.solver.reaches(t);
+  return w.run.phase == Phase::unfolded && t <= w.orbit.until();
+}
 
 // Whether what was set since the last step differs from what is in force.
 bool has_changed(const Wheel& w) {
@@ -82,16 +89,15 @@ Shape shape_of(const Demand& demand) {
 // Whether the motion repeats and is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same
 // shape. False: the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
-  const InForce& now = w.run.in_force;
+  const InForce now = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const bool acted_on = now.law().kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
   // a carrier that turned it at the start and not any more
   const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   const Shape asked = shape_of(w.demand);
-  const InForce at_start = w.run.in_force;  // what is observed on the orbit counts where the run passes it
   const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
   const bool entered = w.orbit.enter(motion, w.orbit_shape == asked, w.solver);
-  w.run.in_force = at_start;
+  w.run.in_force = now;
   w.orbit_shape = asked;
   if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
@@ -99,8 +105,7 @@ bool enter_orbit(Wheel& w) {
 
 // Stage 2, at the first step of a run and after a restored one: the motion is unfolded, or the solver starts.
 Result set_in_motion(Wheel& w) {
-  const bool is_ready = w.run.phase == Phase::unfolded && w.orbit.is_entered();
-  if (w.run.phase == Phase::stepping || is_ready) return {};
+  if (is_known(w, w.run.t)) return {};
   if (!enter_orbit(w)) return start_solver(w);
   w.run.phase = Phase::unfolded;
   return {};
@@ -177,10 +182,10 @@ Result step_to(Wheel& w, double t) {
 Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return {};
-  if (!w.orbit.course().ending)
-    return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
+  const std::optional<int> ending = w.orbit.course().ending;
+  if (!ending) return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
   move_to(w, w.orbit.until());
-  return {Outcome::event, static_cast<Event>(*w.orbit.course().ending)};
+  return {Outcome::event, static_cast<Event>(*ending)};
 }
 
 // Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
@@ -238,9 +243,7 @@ Excess excess_of(const Wheel& w, double h) {
 }
 
 Outcome advance(Wheel& w, double t) {
-  const Phase phase = w.run.phase;
-  const bool known = phase == Phase::stepping ? w.solver.reaches(t) : phase == Phase::unfolded && t <= w.orbit.until();
-  if (w.run.news != News::none || !known) return advance_by_stages(w, t);
+  if (w.run.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
   arrive(w, t);
   return Outcome::stepped;
 }

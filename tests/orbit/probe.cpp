@@ -82,7 +82,7 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   probe->wheel.run.in_force = at_start;
   if (!entered) return 0;
   const orbit::Course& course = probe->orbit.course();
-  return course.ending ? 3 : course.is_steady() ? 2 : 1;
+  return course.ending ? 3 : std::holds_alternative<orbit::Circle>(course.path) ? 2 : 1;
 }
 
 // States at `count` instants, 8 numbers each, psi, phi, X_O and Y_O whole; and N.
@@ -110,7 +110,7 @@ PUBLIC long long probe_run(Probe* probe, unsigned reference, double value, doubl
 }
 
 PUBLIC double probe_half_period(Probe* probe) {
-  return probe->orbit.is_entered() ? probe->orbit.course().half_period() : 0;
+  return probe->orbit.until() >= 0 ? probe->orbit.course().half_period() : 0;
 }
 // Of N, the only event after which the motion goes on.
 PUBLIC double probe_first_fall(Probe* probe) {
