@@ -3,7 +3,7 @@ set(Python3_FIND_VIRTUALENV FIRST)
 if(NOT Python3_EXECUTABLE AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/python)
   set(Python3_EXECUTABLE ${CMAKE_CURRENT_LIST_DIR}/../.venv/bin/python)
 endif()
-find_package(Python3 QUIET COMPONENTS Interpreter)
+find_package(Python3 REQUIRED QUIET COMPONENTS Interpreter)
 
 # CMake would ask it for this folder with the current folder's modules in front.
 execute_process(

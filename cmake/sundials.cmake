@@ -1,5 +1,5 @@
 # CVODE 7.1.1 from source: fetched once by cargo from the Rust registry (a crate with SUNDIALS), pinned by its SHA-256,
-# built with its own CMake as static, optimised, position-independent code. Alternatives:
+# built with its own CMake as static, optimized, position-independent code. Alternatives:
 #   -DWHEEL_SUNDIALS_SOURCE=<folder>   a source tree of SUNDIALS 7 that you have
 set(WHEEL_SUNDIALS_SOURCE "" CACHE PATH "Source tree of SUNDIALS 7; empty: fetch the pinned one")
 set(sundials_crate sundials-sys-0.6.2)

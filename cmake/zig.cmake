@@ -9,7 +9,7 @@ set(system_windows Windows)
 set(system_macos Darwin)
 set(system_wasi Generic) # no shared libraries, no threads, no system below
 set(CMAKE_SYSTEM_NAME ${system_${CMAKE_MATCH_2}})
-if(CMAKE_SYSTEM_NAME STREQUAL Linux) # CMake does not find out that zig can optimise while linking. It cannot for macOS.
+if(CMAKE_SYSTEM_NAME STREQUAL Linux) # CMake does not find out that zig can optimize while linking. It cannot for macOS.
   set(CMAKE_C_FLAGS_INIT -flto)
   set(CMAKE_CXX_FLAGS_INIT -flto)
 endif()

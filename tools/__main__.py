@@ -17,10 +17,9 @@ from subprocess import DEVNULL
 from typing import Any
 
 from wheelfmu.fmu.outputs import worded
-from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.paths import LAB, ROOT
 from wheelfmu.fmu.values import Fault
 
-LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 # The words that a word contains.
 PARTS = {
     "all": ["test", "check", "tidy", "asan", "browser", "release", *LAB],

@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from wheelfmu.diagrams.start_values import variables
 from wheelfmu.fmu.csv_file import Table, read_table
-from wheelfmu.fmu.values import Fault
+from wheelfmu.fmu.values import Fault, variables
 
 Array = NDArray[np.float64]
 POSE = ("X_O", "Y_O", "psi", "theta", "phi")

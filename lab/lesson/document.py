@@ -13,11 +13,11 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader
 
 from lab.lesson.bodies import Body
-from wheelfmu.diagrams.start_values import variables as described
 from wheelfmu.fmu.outputs import fresh
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import POINTS, moments, wheels
-from wheelfmu.fmu.values import bodies as ready_bodies
+from wheelfmu.fmu.presets import POINTS, moments, wheels
+from wheelfmu.fmu.presets import bodies as ready_bodies
+from wheelfmu.fmu.values import variables as described
 
 WEB = Path(__file__).parent / "web"
 PARTS = ("m", "r_0", "r", "J_x", "J_y", "J_z")  # of a body

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from wheelfmu.fmu import outputs
-from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault, Parser, variables
 
 GIVEN = ("r_0", "r", "slope", "slope_direction")
@@ -19,7 +18,7 @@ def is_page(path: Path) -> bool:
 
 def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     """The options; what cannot be meant ends the program with a sentence."""
-    of = variables((ROOT / "modelDescription.xml").read_bytes(), "parameter")
+    of = variables("parameter")
     parser = Parser(prog="./scripts/view", description="Writes an offline 3D page of results (lab/lesson/README.md).")
     add = parser.add_argument
     add("files", nargs="+", type=Path, metavar="FILE.csv", help="as `fmpy simulate --output-file` writes it")

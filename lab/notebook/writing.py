@@ -10,7 +10,7 @@ import os
 import nbformat
 from nbclient import NotebookClient
 
-from wheelfmu.publishing.markdown import ROOT
+from wheelfmu.fmu.paths import ROOT
 
 NOTEBOOK = ROOT / "lab" / "notebook" / "wheel.ipynb"
 KEPT = ("text/plain", "image/png")

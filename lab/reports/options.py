@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, Parser, suggestion
+from wheelfmu.fmu.values import Fault, Parser, one_of
 
 DESCRIPTION = """Measures, and writes the page NAME.md, its pictures and its data into build/report/latest, or with
 --publish into docs/results. Without NAME it lists the reports and their parts. The exit status is 1 if a figure exceeds
@@ -49,10 +49,7 @@ def listing() -> str:
 
 def report(name: str) -> str:
     """A name; Fault if there is none such."""
-    if name not in (*NAMES, "all"):
-        meant = suggestion(name, dict.fromkeys(NAMES, ""))
-        raise Fault(f'there is no report "{name}"; there are {", ".join(NAMES)} and all.{meant}')
-    return name
+    return one_of((*NAMES, "all"), name, "report")
 
 
 def needs(given: argparse.Namespace) -> list[str]:
@@ -82,8 +79,5 @@ def arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
         if len(given.names) != 1 or given.render or given.check:
             raise Fault("--part measures a part of one report.")
         (name,) = given.names
-        known = parts(name)
-        if given.part not in known:
-            meant = suggestion(given.part, dict.fromkeys(known, ""))
-            raise Fault(f'{name} has no part "{given.part}"; its parts are {", ".join(known)}.{meant}')
+        given.part = one_of(parts(name), given.part, f"part of {name}")
     return given

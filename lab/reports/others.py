@@ -5,10 +5,7 @@ Each comparison is a row: source, scene, both values, their difference, and its 
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Mapping
-from io import StringIO
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -21,7 +18,6 @@ from .programs import wheels
 from .programs.wheels import read
 
 HEAD = ["source", "scene", "reference", "wheel.fmu", "difference", "cause of the difference"]
-DEBIANS_PYTHON = "/usr/bin/python3"  # with python3-siconos, which no index of Python packages has
 SICONOS = {
     "rolls": "the paper's free wheel rolls",
     "slides": "the same slides, mu_max = mu_slide = 0.3",
@@ -86,20 +82,10 @@ def legendre(library: Library) -> Compared:
     return who, scene, "Legendre functions", "same", worst, "wheel.fmu: its solver at tolerance 1e-13"
 
 
-def siconos_table() -> dict[str, np.ndarray]:
-    """Siconos run here where its package is installed, else the table of lab/reports/programs."""
-    program = Path(wheels.__file__).with_name("siconos_wheel.py")
-    try:
-        told = subprocess.run([DEBIANS_PYTHON, program], capture_output=True, text=True, check=True).stdout
-    except (OSError, subprocess.CalledProcessError):
-        return read("siconos")
-    return {name: column.to_numpy() for name, column in pd.read_csv(StringIO(told)).items()}
-
-
 @part(30)
 def siconos(report: Report) -> dict[str, object]:
     """Siconos' steps"""
-    table, rows = siconos_table(), []
+    table, rows = read("siconos"), []
     for scene, words in SICONOS.items():
         steps, ours = wheels.siconos(table, scene), wheels.siconos_ours(report.library, scene, 1e-11)
         limit = steps.limit if steps.errors[0] > 1e-6 else steps.places[-1]  # rounding is not extrapolated

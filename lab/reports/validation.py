@@ -1,7 +1,7 @@
 """wheel.fmu beside published measurements: bicycle tyres that coast down on a drum.
 
-The raw files of the drum carry no licence and stay outside. What coast_down.py, in the reports of version 2.1.0, made
-of them, docs/results/data/validation_rig.csv and the tables beside it, is the measurement.
+The raw files of the drum carry no licence and stay outside. The measurement is docs/results/data/validation_rig.csv,
+which was computed from them, and the tables beside it.
 """
 
 from __future__ import annotations

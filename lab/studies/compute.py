@@ -30,13 +30,12 @@ from distributed import Client, Future, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.scheduler import KilledWorker
 
-from wheelfmu.fmu import values
 from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.progress import bar
 from wheelfmu.fmu.values import Fault
 
 from .dataset import TITLE, Region, axes_of, open_results, points, provenance, template
-from .names import description
+from .names import variables_of
 from .plan import Status, Study
 from .worker import Result, pack, run_chunk
 
@@ -69,7 +68,7 @@ def run(
     place = place if "://" in place else str(Path(place).resolve())
     if not fmu.is_file():
         raise Fault(f"There is no file {fmu}; ./scripts/run makes wheel.fmu.")
-    study.check(values.variables(description(fmu)))
+    study.check(variables_of(fmu))
     with nullcontext() if "://" in place else alone(Path(place)):  # one caller at a time
         return fill(study, place, fmu, workers, chunk, overwrite)
 
@@ -78,7 +77,7 @@ def fill(study: Study, place: str, fmu: Path, workers: Workers, chunk: int | Non
     """The results with all their wheels."""
     sha256 = hashlib.sha256(fmu.read_bytes()).hexdigest()
     fingerprint = hashlib.sha256(json.dumps([asdict(study), sha256]).encode()).hexdigest()
-    group, axes, variables = kept(place, fingerprint, overwrite), axes_of(study), values.variables(description(fmu))
+    group, axes, variables = kept(place, fingerprint, overwrite), axes_of(study), variables_of(fmu)
     if there := int((group["status"][:] != Status.not_computed).sum()) if group else 0:
         print(f"{there} of {group['status'].size} wheels are there already.", file=sys.stderr)
         if there == group["status"].size:

@@ -32,10 +32,14 @@ def description(fmu: Path = ROOT / "wheel.fmu") -> bytes:
         return (ROOT / "modelDescription.xml").read_bytes()
 
 
+def variables_of(fmu: Path = ROOT / "wheel.fmu") -> dict[str, Variable]:
+    return variables(description=description(fmu))
+
+
 @cache
 def quantities() -> dict[str, Variable]:
     """The variables of the project's FMU, and what a measure takes besides."""
-    return variables(description()) | QUANTITIES
+    return variables_of() | QUANTITIES
 
 
 def in_si(name: str, value: float | str) -> float:

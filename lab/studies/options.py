@@ -9,11 +9,11 @@ import re
 from pathlib import Path
 from typing import Any
 
-from lab.studies.names import SETTABLE, check_names, description
+from lab.studies.names import SETTABLE, check_names, variables_of
 from lab.studies.plan import Study
 from wheelfmu.fmu.csv_file import read_table
 from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import Fault, Parser, Variable, limited, number, parted, single, suggestion, variables
+from wheelfmu.fmu.values import Fault, Parser, Variable, limited, number, parted, single, suggestion
 
 INTERRUPTED = "stopped; the same command continues from here."
 EXAMPLES = Path(__file__).parent / "examples"
@@ -57,7 +57,7 @@ def pairs(option: str, texts: list[str]) -> dict[str, str]:
 
 def study_of(arguments: argparse.Namespace) -> Study:
     """The study that the options describe, checked."""
-    known, table = variables(description(arguments.fmu)), read_table(arguments.list) if arguments.list else None
+    known, table = variables_of(arguments.fmu), read_table(arguments.list) if arguments.list else None
     axes, given = pairs("--vary", arguments.vary), pairs("--set", arguments.set)
     varied = [*axes, *(table.columns if table else ())]
     check_names([*varied, *given], SETTABLE, known)

@@ -13,8 +13,8 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from wheelfmu.fmu import values
-from wheelfmu.fmu.values import MOMENTS, Fault, Variable
+from wheelfmu.fmu.presets import MOMENTS, doubt
+from wheelfmu.fmu.values import Fault, Variable
 
 from .measures import Measure, parse_measure
 from .names import READABLE, SETTABLE, check_names, counters_of, in_si
@@ -149,7 +149,7 @@ class Study:
 
     def doubt(self, variables: Mapping[str, Variable]) -> str:
         """One sentence if there are wheels that no body can be, with their number; else nothing."""
-        said = [values.doubt(body) for body in self.bodies(variables)]
+        said = [doubt(body) for body in self.bodies(variables)]
         found = [text for text in said if text]
         wheels = math.prod(map(len, self.grid.values())) * max(map(len, self.list.values()), default=1)
         count = len(found) * wheels // len(said)

@@ -11,12 +11,11 @@ import pytest
 from contract.test_serialization import HEADER, signed, words_of
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK, Values
-from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import variables
 from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
 from wheelfmu.truth.sliding import ROAD, THROWN
 
-PARAMETERS = len(variables((ROOT / "modelDescription.xml").read_bytes(), "parameter"))
+PARAMETERS = len(variables("parameter"))
 EVENTS = 8  # names of `Event` in run.hpp, `none` included
 MOST, COUNT = float(np.finfo(float).max), 2**53
 FORGED = "fmi2SetFMUstate: a number is out of its bounds."

@@ -9,7 +9,7 @@ import pytest
 from support.bounds import beyond, relative_error, within
 
 from wheelfmu.diagrams import paper, reading
-from wheelfmu.fmu import values
+from wheelfmu.fmu import presets
 from wheelfmu.fmu.paths import build_folder
 from wheelfmu.truth.closed_forms import upright_stiffness
 from wheelfmu.truth.motion import Library
@@ -86,6 +86,6 @@ def test_an_early_end_is_the_last_row(library: Library) -> None:
 def test_the_interval_of_the_rows_follows_the_fastest_period_of_the_start(spin, free, carried) -> None:
     """Forty rows in the period of the nutation, 1.593 times as fast as the spin; of the spin on a wheel carrier."""
     own = {name: v.preset for name, v in paper.SETTINGS.items()} | {"phi_dot_start": spin}
-    assert (values.interval(own, 0.01), values.interval(own | {"guided": 1.0}, 0.01)) == (free, carried)
+    assert (presets.interval(own, 0.01), presets.interval(own | {"guided": 1.0}, 0.01)) == (free, carried)
     fast = upright_stiffness(PAPER, 1e4) ** 0.5
-    within(relative_error(values.nutation(own, 1e4), fast), 1e-6, "nutation at high spin, relative")
+    within(relative_error(presets.nutation(own, 1e4), fast), 1e-6, "nutation at high spin, relative")

@@ -58,9 +58,9 @@ def test_the_papers_twelve_states_lead_where_the_fmu_does(library: Library, form
     beyond(np.abs(marched(form, paper_table(r=0.0501), papers_start(), 0.005, 400) - told).max(), 1e-4, "another r")
 
 
-def test_the_drift_of_24_falls_with_the_step_and_only_a_stabilised_one_does_not_grow(library: Library) -> None:
+def test_the_drift_of_24_falls_with_the_step_and_only_a_stabilized_one_does_not_grow(library: Library) -> None:
     plain, tamed = ([marched_to(form, 0.02, end)[1] for end in (2.0, 8.0)] for form in FORMS.values())
     beyond(plain[1] / plain[0], 3, "height that is lost in four times the time, plain")
-    within(tamed[1], plain[1] / 10, "height that is lost, stabilised, m")
+    within(tamed[1], plain[1] / 10, "height that is lost, stabilized, m")
     finer = marched_to(Paper, 0.01, 8.0)[1]
     within(finer / plain[1], 0.15, "height that is lost with half the step")

@@ -23,6 +23,7 @@ from wheelfmu.commands import MODULES
 from wheelfmu.fmu.driver import DERIVATIVES, STATES
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.values import Fault
+from wheelfmu.fmu.values import variables as described
 from wheelfmu.publishing import markdown, variables
 from wheelfmu.publishing.markdown import pages, with_figures
 
@@ -56,7 +57,7 @@ def test_a_zip_without_git_has_the_same_documents(tmp_path: Path, monkeypatch: p
 
 
 def test_another_variable_would_be_noticed() -> None:
-    rows = variables.read_variables()
+    rows = [*described().values()]
     for page in variables.PAGES:
         text = page.read_text(encoding="utf-8")
         assert variables.with_tables(text, rows[1:], page) != text
@@ -157,13 +158,13 @@ def outputs_in(page: str) -> set[str]:
 
 
 def test_the_equations_have_a_row_for_every_output_that_is_not_read_off_the_motion() -> None:
-    outputs = {row.name for row in variables.read_variables() if row.causality == "output"}
+    outputs = {row.name for row in described().values() if row.causality == "output"}
     page = TEXTS["docs/equations.md"]
     assert outputs - PLAIN == outputs_in(page) - {"mu_required"} != outputs_in(page.replace("`X_C`, ", ""))
 
 
 def test_a_test_of_physics_names_every_parameter_and_input() -> None:
-    given = {row.name for row in variables.read_variables() if row.causality in ("parameter", "input")}
+    given = {row.name for row in described().values() if row.causality in ("parameter", "input")}
     named = words("tests/physics/*.py")
     assert given <= named and "J_hub" not in named
 

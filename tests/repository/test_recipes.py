@@ -187,7 +187,7 @@ def test_the_parameter_does_what_its_recipe_says(patched: Patched) -> None:
 
 def test_new_variables_have_the_next_references_and_no_other_moves(patched: Patched) -> None:
     old, new = (
-        {name: v.reference for name, v in variables((folder / "modelDescription.xml").read_bytes()).items()}
+        {name: v.reference for name, v in variables(description=(folder / "modelDescription.xml").read_bytes()).items()}
         for folder in (ROOT, patched.root)
     )
     assert old == {name: new[name] for name in old}

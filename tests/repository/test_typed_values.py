@@ -27,10 +27,8 @@ REFUSED = {
     "run thetastart=1": "Do you mean ",
     "run mu=0.4": "Do you mean ",
     "run coni": "Do you mean ",
-    "run wheel=coni": "Do you mean ",
     "run s=0.01 s=0.02": "given twice, as ",
     "run coin bicycle_wheel": "given twice, as ",
-    "run coin wheel=coin": "given twice, as ",
     "run theta=1": "theta_start",
     "run slope=-8deg": "slope_direction",
     "run s": "neither name=value nor a preset wheel",
@@ -40,7 +38,6 @@ REFUSED = {
     "run method=euler": "1 (automatic), 2 (adams), 3 (bdf), 4 (runge_kutta)",
     "run friction_law=0": "1 (exact), 2 (",
     "run output_interval=20": "too long",
-    "run wheel=tank": "There is no wheel",
     "run slope_direction=10%": "rad or deg",
     "run v=3 phi_dot_start=-2": "phi_dot_start follows from v",
 }

@@ -21,7 +21,7 @@ OPTIONS = {
 
 
 def main(given: Namespace) -> None:
-    from lab.lesson.__main__ import live
+    from lab.lesson.writing import live
     from wheelfmu.release import compiling
 
     folder = ROOT / "build" / "wasm"

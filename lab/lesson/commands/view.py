@@ -2,16 +2,12 @@
 
 from argparse import Namespace
 
+from lab.lesson.options import arguments as reads  # noqa: F401 - by __main__
+
 STAYS, NEEDS = True, ("lesson",)
 
 
-def reads(words: list[str]) -> Namespace:
-    from lab.lesson import options
-
-    return options.arguments(words)
-
-
 def main(given: Namespace) -> None:
-    from lab.lesson.__main__ import recorded
+    from lab.lesson.writing import recorded
 
     recorded(given)

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import Browser, BrowserContext, Page
 
-from lab.lesson import bodies
-from lab.lesson.__main__ import main
+from lab.lesson import bodies, options, writing
 from lab.lesson.browser import show, surroundings
+from wheelfmu.fmu.outputs import worded
 
 POSE = (*bodies.POSE, "Z_O")
 RECORD = (*bodies.POSE, *bodies.RATES, *bodies.SHOWN)
@@ -71,8 +71,9 @@ def write_csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
 
 
 def view(*arguments: object) -> None:
-    """What ./scripts/view does, once all is set up."""
-    main(*map(str, arguments))
+    """./scripts/view, once all is set up."""
+    with worded("view"):
+        writing.recorded(options.arguments([*map(str, arguments)]))
 
 
 def column(page: Page, name: str, wheel: int = 0) -> np.ndarray:

@@ -94,7 +94,7 @@ def test_a_long_run_is_thinned_to_a_page_below_ten_megabytes(one, capsys, monkey
     (body,) = read_bodies(one)
     columns = {name: np.tile(column, 250) for name, column in body.columns.items()}
     columns["time"] = np.arange(len(columns["time"])) * 0.01
-    monkeypatch.setattr("lab.lesson.__main__.read_bodies", lambda *_: [replace(body, columns=columns)])
+    monkeypatch.setattr("lab.lesson.writing.read_bodies", lambda *_: [replace(body, columns=columns)])
     view(one)
     assert "One row in 3 is kept" in capsys.readouterr().out
     assert 6_000_000 < one.with_suffix(".html").stat().st_size < 10_000_000

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.bounds import within
 
-from wheelfmu.fmu.values import bodies, moments
+from wheelfmu.fmu.presets import bodies, moments
 from wheelfmu.truth.closed_forms import critical_spin
 from wheelfmu.truth.scenes import PAPER
 

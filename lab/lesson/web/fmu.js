@@ -54,7 +54,7 @@ export class Fmu {
     this.view(Uint32Array, this.list, names.length).set(names.map((name) => variables[name].reference));
     const cells = () => this.view(type === 'Real' ? Float64Array : Int32Array, this.cells, names.length);
     cells().set(values);
-    this.call(way + (type === 'Enumeration' ? 'Integer' : type), this.list, names.length, this.cells);
+    this.call(way + type, this.list, names.length, this.cells);
     return cells();
   }
 

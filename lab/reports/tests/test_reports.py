@@ -70,7 +70,7 @@ def test_the_parts_that_are_listed_are_those_that_are_measured() -> None:
         assert list(options.parts(name)) == [part.name for part in command.parts_of(name)], name
 
 
-WRONG = {"speed --part stps": "speed has no part", "speed accuracy --part steps": "a part of one report"}
+WRONG = {"speed --part stps": "there is no part of speed", "speed accuracy --part steps": "a part of one report"}
 WRONG |= {"--publish": "which report?", "all --part steps": "a part of one report"}
 
 

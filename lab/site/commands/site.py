@@ -9,28 +9,16 @@ from wheelfmu.fmu.outputs import alone
 from wheelfmu.fmu.paths import ROOT
 
 SOURCE, SITE = ROOT / "lab" / "site", ROOT / "build" / "site"
-OPTIONS = {
-    "--documents": {
-        "action": "store_true",
-        "help": "without the lesson, which is compiled with the releases' compiler",
-    }
-}
+LESSON = (ROOT / "lab" / "lesson").exists()
+NEEDS = ("site", *("lesson", "release") * LESSON)
 
 
-def live(given: Namespace) -> bool:
-    return not given.documents and (ROOT / "lab" / "lesson").exists()
-
-
-def needs(given: Namespace) -> list[str]:
-    return ["site", *["lesson", "release"] * live(given)]
-
-
-def main(given: Namespace) -> None:
+def main(_given: Namespace) -> None:
     with alone(SITE):
         shutil.rmtree(SITE, ignore_errors=True)
         SITE.mkdir(parents=True)
         page = SITE / "live.html"
-        if live(given):
+        if LESSON:
             processes.check(*processes.command("page", page))
         how = ["-q", "-E", "-n", "-W", "--keep-going", "-j", "auto", "-b", "html"]
         where = ["-c", SOURCE, "-d", ROOT / "build" / "site-doctrees", "-A", f"live={page if page.exists() else ''}"]

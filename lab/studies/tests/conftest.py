@@ -10,7 +10,7 @@ from fmpy import extract
 
 from lab.studies import Study, compute
 from lab.studies.dataset import axes_of, points, template
-from lab.studies.names import description
+from lab.studies.names import variables_of
 from lab.studies.worker import Instance, pack, run_block
 from wheelfmu.fmu import values
 
@@ -19,7 +19,7 @@ from wheelfmu.fmu import values
 def alone(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[Study], xr.Dataset]:
     """Runs a study by one instance in this process, one wheel after the other."""
     folder = extract(pack(fmu_path, tmp_path_factory.mktemp("fmu") / "wheel.zip"))
-    variables, instance = values.variables(description(fmu_path)), Instance(folder)
+    variables, instance = variables_of(fmu_path), Instance(folder)
 
     def run(study: Study) -> xr.Dataset:
         study.check(variables)

@@ -39,7 +39,7 @@ def test_each_fate_is_a_status_with_the_message_of_the_fmu(alone) -> None:
         ("refused", {"theta_start": 4}, "theta_start"),
         ("refused", {"s": -1}, "s"),
     ]
-    usual = {name: float(v.start) for name, v in variables(DESCRIPTION).items() if name in JAMS}
+    usual = {name: float(v.start) for name, v in variables().items() if name in JAMS}
     usual |= {"theta_start": 1.3, "s": 0}
     columns = {name: [(usual | changed)[name] for _, changed, _ in wheels] for name in usual}
     results = alone(Study(list=columns, measures={"lowest": "min(theta)"}))
@@ -118,7 +118,7 @@ NO_MEASURES = ("", "theta <", "first(theta)", "min(theta", "min(a, b)", "first(t
 
 
 def test_an_impossible_study_is_refused_with_a_message() -> None:
-    known, good = variables((ROOT / "modelDescription.xml").read_bytes()), {"grid": {"s": [0.0, 0.01]}}
+    known, good = variables(), {"grid": {"s": [0.0, 0.01]}}
     for words, fields in [*FAULTS.items(), *(("not a measure", {"measures": {"low": text}}) for text in NO_MEASURES)]:
         with pytest.raises(StudyError, match=words):
             Study(**(good | fields)).check(known)

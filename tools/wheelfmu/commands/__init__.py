@@ -9,15 +9,14 @@ and INTERRUPTED is its word on that; one that STAYS works in the caller's folder
 
 from pathlib import Path
 
-from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.paths import LAB, ROOT
 
-HELPERS = ("__init__", "processes")
 PLACES = {"wheelfmu.commands": Path(__file__).parent}
-PLACES |= {f"lab.{path.parent.name}.commands": path for path in sorted((ROOT / "lab").glob("*/commands"))}
+PLACES |= {f"lab.{name}.commands": ROOT / "lab" / name / "commands" for name in LAB}
 # The module of each command that is here.
 MODULES = {
     path.stem: f"{package}.{path.stem}"
     for package, folder in PLACES.items()
     for path in folder.glob("[a-z]*.py")
-    if path.stem not in HELPERS
+    if path.stem != "processes"
 }

@@ -56,9 +56,9 @@ def command(name: str, *words: object) -> list[str]:
     return python("wheelfmu", name, *words)
 
 
-def side_by_side(*programs: list[str], **how: Any) -> None:
+def side_by_side(*programs: list[str]) -> None:
     """All run to their end; Failed if one has."""
-    if code := max(map(ended, [start(*words, **how) for words in programs])):
+    if code := max(map(ended, [start(*words) for words in programs])):
         raise Failed(code)
 
 

@@ -44,7 +44,7 @@ from pathlib import Path
 from subprocess import PIPE, STDOUT
 
 from wheelfmu.commands import build, processes
-from wheelfmu.diagrams import start_values
+from wheelfmu.fmu import start_values
 from wheelfmu.fmu.outputs import deliver, new_folder
 from wheelfmu.fmu.paths import ROOT
 
@@ -100,7 +100,7 @@ def draw(new: Path, words: list[str]) -> list[str]:
     if PAGE.exists() and moving:
         tables = [new / f"{name}.csv" for name in moving]
         options = [*tables, "--output", new / "wheel.html", "--labels", *moving.values()]
-        drawing.insert(0, processes.python("lab.lesson", *options))
+        drawing.insert(0, processes.command("view", *options))
     running = [processes.start(*words, stdout=PIPE, text=True) for words in drawing]
     said = [one.communicate()[0] for one in running]
     if any(one.returncode for one in running):

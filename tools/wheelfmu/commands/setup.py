@@ -4,10 +4,9 @@ Python packages into the folder .venv, in the versions of requirements.lock. Oth
 from argparse import Namespace
 from functools import partial
 
-from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.paths import LAB
 from wheelfmu.fmu.values import one_of
 
-LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))
 WORDS = ["test", "all", "check", "tidy", "asan", "browser", "release", "platforms", *LAB]
 ABOUT = f"a group besides what ./scripts/run needs: {', '.join(WORDS)} (all: ./scripts/test all; check: linters)"
 

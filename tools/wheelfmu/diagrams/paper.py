@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Draw what `./scripts/run` simulated: the paper's six diagrams (Fig. 1-6), path and ground, energy, forces, slip.
 
     python -m wheelfmu.diagrams.paper FOLDER [argument of ./scripts/run]...
@@ -26,9 +25,11 @@ from matplotlib.textpath import TextPath
 from wheelfmu.diagrams import panels, style
 from wheelfmu.diagrams.reading import read
 from wheelfmu.diagrams.scene import Scene
-from wheelfmu.diagrams.start_values import PAPER_S, ROOT, RUN, doubt, values, variables
 from wheelfmu.fmu.outputs import worded
-from wheelfmu.fmu.values import MOMENTS
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.presets import MOMENTS, doubt
+from wheelfmu.fmu.start_values import PAPER_S, RUN, values
+from wheelfmu.fmu.values import variables
 from wheelfmu.truth.motion import Library
 
 SETTINGS = variables("parameter", "input")

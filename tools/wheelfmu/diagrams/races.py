@@ -19,8 +19,10 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from wheelfmu.diagrams import style
-from wheelfmu.diagrams.start_values import CHECKS, PAPER_S, ROOT, RUN, values, variables
 from wheelfmu.fmu.outputs import worded
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.start_values import CHECKS, PAPER_S, RUN, values
+from wheelfmu.fmu.values import variables
 from wheelfmu.truth.trust import DEFAULT, REPEATS, Wheel, trust
 
 BESIDE = 0.06  # decades: marks that are closer are one

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from wheelfmu.diagrams.scene import APART, Array, Scene
-from wheelfmu.diagrams.start_values import variables
-from wheelfmu.fmu.values import POINTS, nutation
+from wheelfmu.fmu.presets import POINTS, nutation
+from wheelfmu.fmu.values import variables
 from wheelfmu.truth.motion import Library, Run
 
 READ = ["X_O", "Y_O", "X_C", "Y_C", "psi", "theta", "psi_dot", "phi_dot", "omega_z"]

@@ -18,7 +18,7 @@ from fmpy.model_description import ModelDescription
 from numpy.typing import NDArray
 
 MODEL_EXCHANGE, CO_SIMULATION = range(2)
-OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
 HEADLINE = ("X_O", "theta", "phi_dot", "psi_dot")
 COUNTERS = ("n_steps", "n_rhs", "n_jac", "n_roots", "n_events", "n_restarts")
@@ -159,9 +159,8 @@ class FMU2Wheel(FMU2Slave, FMU2Model, AbstractContextManager):
         return [self.references[name] for name in names]
 
     def type_of(self, name: str) -> str:
-        """Real, Boolean or, for all others, Integer."""
-        kind = self.variables[name].type
-        return kind if kind in ("Real", "Boolean") else "Integer"
+        """Real, Integer or Boolean."""
+        return self.variables[name].type
 
     def set(self, **values: Value) -> int:
         """Values by name, each with the function of its type, a choice by its name or number; the worst status."""

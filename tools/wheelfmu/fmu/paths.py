@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
+LAB = sorted(path.parent.name for path in (ROOT / "lab").glob("*/commands"))  # its folders that have commands
 
 
 def build_folder() -> Path:

@@ -6,9 +6,10 @@ import html
 import re
 from pathlib import Path
 
-from wheelfmu.diagrams.start_values import Variable
-from wheelfmu.diagrams.start_values import variables as described
-from wheelfmu.publishing.markdown import ROOT, page
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.fmu.values import Variable
+from wheelfmu.fmu.values import variables as described
+from wheelfmu.publishing.markdown import page
 
 PAGES = (ROOT / "docs" / "variables.md", ROOT / "fmu-src" / "archive" / "documentation" / "index.html")
 TITLES = {
@@ -18,10 +19,6 @@ TITLES = {
     "local": "For inspection",
 }
 PLACE = re.compile("(<!-- variables -->).*(<!-- end of variables -->)", re.DOTALL)
-
-
-def read_variables() -> list[Variable]:
-    return [*described().values()]
 
 
 def start(v: Variable) -> str:
@@ -47,7 +44,7 @@ def with_tables(text: str, variables: list[Variable], place: Path) -> str:
 
 def fill(check: bool = False) -> bool:
     """Whether a page differs from the description; it is filled, unless it is to be checked alone."""
-    known = read_variables()
+    known = [*described().values()]
     texts = {place: place.read_text(encoding="utf-8") for place in PAGES}
     filled = {place: with_tables(text, known, place) for place, text in texts.items()}
     # All of them are filled before the first is written.

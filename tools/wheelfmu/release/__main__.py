@@ -10,7 +10,8 @@ import tempfile
 from pathlib import Path
 
 from wheelfmu.fmu.outputs import step
-from wheelfmu.publishing.markdown import ROOT, page, said
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.publishing.markdown import page, said
 from wheelfmu.release import compiling, fmu, folder, libraries, platforms
 
 OUT = ROOT / "build" / "wheel-release"

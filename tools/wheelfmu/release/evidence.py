@@ -51,7 +51,7 @@ def write(fmu: Path, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     place = fmpy.extract(str(fmu))
     description = fmpy.read_model_description(place)
-    types = {v.name: v.type.replace("Enumeration", "Integer") for v in description.modelVariables}
+    types = {v.name: v.type for v in description.modelVariables}
     for name, kept in SETS.items():
         given, inputs = kept.get("values"), kept.get("inputs", {})
         file = (folder if given else Path(place) / EVIDENCE) / f"{name}.ssv"

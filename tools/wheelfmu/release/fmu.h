@@ -1,6 +1,6 @@
 /* The functions of the FMU that the C programs call, by FMI's names without "fmi2". No paper equation, no frame. */
-#ifndef SUPPORT_FMU_H
-#define SUPPORT_FMU_H
+#ifndef FMU_H
+#define FMU_H
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@
 /* clang-format off */
 #define FMU_FUNCTIONS(F) \
   F(Instantiate) F(FreeInstance) F(SetupExperiment) F(EnterInitializationMode) F(ExitInitializationMode) \
-  F(SetReal) F(SetInteger) F(SetBoolean) F(SetRealInputDerivatives) F(DoStep) F(GetReal) F(GetInteger)
+  F(SetReal) F(SetInteger) F(SetBoolean) F(SetRealInputDerivatives) F(DoStep) F(GetReal)
 /* clang-format on */
 
 typedef struct Fmu {

@@ -9,7 +9,8 @@ from pathlib import Path
 from zipfile import ZipFile
 
 from wheelfmu.fmu import pack_fmu
-from wheelfmu.release.compiling import ROOT, build, compiler
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.release.compiling import build, compiler
 
 LINUX, ARM, WINDOWS = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17", "x86_64-windows-gnu"
 INTEL_MAC, ARM_MAC = "x86_64-macos.11.0", "aarch64-macos.11.0"

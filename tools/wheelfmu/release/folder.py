@@ -11,7 +11,8 @@ from hashlib import sha256
 from pathlib import Path
 
 from wheelfmu.fmu.outputs import deliver
-from wheelfmu.publishing.markdown import ROOT, page
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.publishing.markdown import page
 
 VERSIONS = {
     "CMakeLists.txt": r"project\(wheel VERSION (\S+)",

@@ -15,7 +15,8 @@ import fmpy
 import wasmtime
 from tabulate import tabulate
 
-from wheelfmu.release.compiling import ROOT, WASM, build
+from wheelfmu.fmu.paths import ROOT
+from wheelfmu.release.compiling import WASM, build
 from wheelfmu.release.fmu import ARM, ARM_MAC, INTEL_MAC, LINUX, WINDOWS
 
 DESCRIPTION = fmpy.read_model_description(str(ROOT), validate=False)

@@ -1,5 +1,5 @@
 """The paper's matrices and its system, (1)-(26), written once more in numpy, misprints included; and integrated with
-all its states (q, q_dot), which leave the constraints, plain and stabilised (Baumgarte).
+all its states (q, q_dot), which leave the constraints, plain and stabilized (Baumgarte).
 
 An independent transcription: nothing here calls the product. Fixed axes for O and forces, body axes
 for rotation, Euler angles psi, theta, phi. Works on whole tables of states (leading axes) and on
@@ -150,7 +150,7 @@ class Paper:
     def r_dot(self) -> np.ndarray:  # (13)
         return scaled(self.beta_dot[..., 1], self.r_theta) + scaled(self.beta_dot[..., 2], self.r_phi)
 
-    def F(self, load: np.ndarray | None = None) -> np.ndarray:  # (15), generalised
+    def F(self, load: np.ndarray | None = None) -> np.ndarray:  # (15), generalized
         w = self.wheel
         weight = column(w["m"] * w["g_X"], w["m"] * w["g_Y"], -w["m"] * w["g_n"])
         if load is None:
@@ -275,7 +275,7 @@ def set_rolling(wheel: np.ndarray, motions: np.ndarray) -> np.ndarray:
 # ---- all twelve states integrated: how far the constraints of (24) drift ----
 
 
-class Stabilised(Paper):
+class Stabilized(Paper):
     """(24) with -[B_dot]{q_dot} - a [B]{q_dot} in its last rows, and a height that falls to that of (32) at the rate a
     (Baumgarte): errors of the constraints decay, on the constraints nothing changes."""
 
@@ -297,7 +297,7 @@ class Stabilised(Paper):
         return out
 
 
-FORMS = {"plain": Paper, "stabilised": Stabilised}
+FORMS = {"plain": Paper, "stabilized": Stabilized}
 
 
 def marched(form: type[Paper], wheel: np.ndarray, y: np.ndarray, step: float, count: int) -> np.ndarray:

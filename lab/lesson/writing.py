@@ -1,7 +1,6 @@
-"""Writes the pages: of result files, python -m lab.lesson FILE.csv..., and of the wheel itself."""
+"""Writes the pages: of result files, and of the wheel itself."""
 
 import argparse
-import sys
 from collections import Counter
 from dataclasses import replace
 from itertools import zip_longest
@@ -9,15 +8,10 @@ from pathlib import Path
 
 from lab.lesson import document, options
 from lab.lesson.bodies import Body, read_bodies
-from wheelfmu.fmu.outputs import check, worded
+from wheelfmu.fmu.outputs import check
 from wheelfmu.fmu.values import Fault
 
 PLACES = {"fl": "front left", "fr": "front right", "rl": "rear left", "rr": "rear right"}
-
-
-def main(*words: str) -> None:
-    with worded("view"):
-        recorded(options.arguments(words))
 
 
 def live(wasm: Path, output: Path, *, overwrite: bool = False) -> None:
@@ -50,7 +44,3 @@ def named(bodies: list[Body], labels: list[str]) -> list[Body]:
         name = body.name if seen[body.name] == 1 else f"{body.name} {seen[body.name]}"
         found.append(replace(body, name=name, label=label or PLACES.get(name.removeprefix("wheel_"), name)))
     return found
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -1,7 +1,7 @@
 """The arguments of ./scripts/run: checked against modelDescription.xml, or to be read again by what draws the results.
 
-Prints the arguments of `fmpy simulate`, one a line: times, the variables to record, with all that was set, so that a
-figure can say what was run, and start values in SI, which an input keeps. It needs no package, so that `--help` works
+Gives the arguments of `fmpy simulate`: times, the variables to record, with all that was set, so that a figure can say
+what was run, and start values in SI, which an input keeps. It needs no package, so that `--help` works
 before anything is installed.
 """
 
@@ -9,22 +9,8 @@ from __future__ import annotations
 
 from itertools import chain
 
-from wheelfmu.fmu.paths import ROOT
-from wheelfmu.fmu.values import (
-    UPRIGHT,
-    Fault,
-    Variable,
-    interval,
-    preset,
-    scale,
-    single,
-    spin,
-    suggestion,
-    thrown,
-    wheels,
-)
-from wheelfmu.fmu.values import doubt as doubt  # for the diagrams
-from wheelfmu.fmu.values import variables as described
+from wheelfmu.fmu.presets import UPRIGHT, interval, preset, scale, spin, thrown, wheels
+from wheelfmu.fmu.values import Fault, Variable, single, suggestion, variables
 
 PAPER_S = 0.03  # m, (29)
 ROWS = 10_000_000  # of a table, at most: some gigabytes
@@ -38,11 +24,6 @@ ABOUT_CHECK = "After the run: 1 estimate (of the error), 2 methods (error over t
 CHECK = Variable("error", "run", "Integer", "", CHECKS["estimate"], "", "", ABOUT_CHECK)
 ABOUT_SPEED = "Initial speed, forward: upright, along X, from the origin, unless the start values are given"
 SPEED = Variable("v", "run", "Real", "m/s", "", "", "", ABOUT_SPEED)
-
-
-def variables(*causalities: str) -> dict[str, Variable]:
-    """Those of the description, in its order."""
-    return described((ROOT / "modelDescription.xml").read_bytes(), *causalities)
 
 
 def known() -> dict[str, Variable]:
@@ -62,8 +43,8 @@ def values(arguments: list[str]) -> dict[str, str]:
     found, typed = {}, []
     for argument in arguments:
         name, equals, text = argument.partition("=")
-        if name == "wheel" or (not equals and name in names):
-            typed.append(("A preset wheel", text or name))
+        if not equals and name in names:
+            typed.append(("A preset wheel", name))
         elif not equals:
             meant = suggestion(name, dict.fromkeys(names, ""))
             raise Fault(f'"{argument}" is neither name=value nor a preset wheel.{meant} See ./scripts/run --help.')
