@@ -65,7 +65,7 @@ CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
 CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
 CONSTANT(double, stretch_to_stop, 0.01, "of the step", "by which it is longer to end at the stop: no tiny step");
 CONSTANT(double, leapt, 1e3, "errors", "what a step over a bend counts as: the next one is a third as long");
-CONSTANT(double, most_widths, 4, "widths", "the most of a bend that six points can follow in a step");
+CONSTANT(double, most_widths, 2, "widths", "the most of a bend that six points can follow in a step");
 CONSTANT(double, roundings, 2, "roundings of time", "the shortest step, in which only states that settle move");
 
 // (rates at the points) => y at the point j of a step of this size
@@ -220,7 +220,8 @@ void Collocation::like(const Problem& problem, double error, int attempts, bool 
   CONSTANT(double, spare, 0.2, "of the size", "a step is shorter than fits its error, so that few are refused");
   CONSTANT(double, rounded_error, 1e-6, "1", "smaller errors are mostly rounding");
   const double fitting = (1 - spare) / eighth_root(std::fmax(error, rounded_error));
-  const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, 3.0) : 0.25);
+  const double most = problem.steep && attempts > 0 ? 1 : 3;  // a step that leapt over a bend would do so again
+  const double next = size_ * (known_ || attempts < 2 ? std::clamp(fitting, 0.15, most) : 0.25);
   if (!known_ || !stops || next < liked_) liked_ = next;
   if (!known_ || !problem.turning) return;
   const int speed = problem.turning->speed;

@@ -23,9 +23,9 @@ CONSTANT(double, share_of_tolerance, 0.03, "1",
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
 CONSTANT(double, reserve, 0.1, "of the size", "a step is shorter than fits its error, so that few are refused");
 CONSTANT(double, stretch, 0.01, "of the step", "by which it grows to end at the stop: no tiny step, 8 % more error");
-CONSTANT(double, widths_per_step, 1.2, "widths", "in a step through the bend: less than to its poles at pi / 2");
-CONSTANT(double, bend, 5, "widths", "from zero to where the bend ends: 1 - tanh(5) is 1e-4");
-CONSTANT(double, still, 0.1, "widths", "by which a steep state that rests moves in a step");
+CONSTANT(double, widths_per_step, 1, "widths", "in a step through the bend: less than to its poles at pi / 2");
+CONSTANT(double, bend, 4, "widths", "from zero to where the bend ends: 1 - tanh(4) is 7e-4");
+CONSTANT(double, still, 0.2, "widths", "by which a steep state that rests moves in a step");
 CONSTANT(double, far_longer, 3, "steps", "that fit into the step the motion allows, where collocation takes over");
 CONSTANT(double, least_error, 1e-6, "1", "smaller errors, as after a step cut short, are mostly rounding");
 

@@ -158,7 +158,7 @@ void Solver::read(double t, double* y) const {
 // that is saved, at which they stay.
 void Solver::visit(support::Archive& archive) {
   bool rests = rests_in_law();
-  archive.count(rests, 0, problem_.steep ? 1 : 0);
+  archive.count(rests, 0, problem_.steep && !problem_.turning ? 1 : 0);
   if (rests) method_ = Method::collocation;
   step_.visit(archive, problem_.states);
   archive.range(known_until_, step_.start, step_.end);

@@ -79,9 +79,10 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
   if (!starts) {
     motion.psi_dot = k.psi_dot;
     motion.theta_dot = k.theta_dot;
-    const double hold = scene.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
-    WheelScene ramp = scene;  // which may enter the layer
-    if (setup.friction_law == regularized_law && scene.friction.kind == WHEEL_ROLLING)
+    WheelScene ramp = scene;
+    ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);  // what was set asks for it before the ramp
+    const double hold = ramp.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
+    if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
       ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
     wheel_jump(&ramp, hold, psi_dot, theta_dot, &motion);
   }

@@ -193,6 +193,20 @@ def test_a_state_that_slides_although_its_wheel_cannot_is_refused(wheel):
         assert taken or w.by(0.01).get("contact_mode") == [0]
 
 
+def test_a_state_that_rests_in_a_law_while_it_slides_is_refused(wheel):
+    """Whether it rests is the first word of the solver's history, which a wheel that has not moved lacks."""
+    law = {"guided": True, "theta_start": 1.5, "s": 0.01, "friction_law": "regularized", "omega_s": 0.1}
+    slides = law | {"mu_max": 0.5, "mu_slide": 0.4, "phi_dot_start": 0.0, "slip_x_start": 2.0, "M_brake": 900.0}
+    for start, until, rests in ((slides, 0.1, False), (law | {"phi_dot_start": -0.1, "M_brake": 60.0}, 1.0, True)):
+        w = wheel().start(**start)
+        place = len(words_of(w.serialized()))
+        words = words_of(w.to(until).serialized())
+        assert (words[place], w.get("contact_mode")[0]) == (rests, not rests)
+        forged = signed([*words[:place], 1, *words[place + 1 :]])
+        assert (w.restore(forged) == OK) == rests  # the partner: one that does rest
+        assert rests or w.said() == "fmi2SetFMUstate: a number is out of its bounds."
+
+
 EXTREME = {"guided": True, "theta_start": 1.5, "phi_dot_start": 0.0, "m": 1e-9, "r_0": 1e-3, "r": 0.0, "s": 1e-5}
 EXTREME |= {f"J_{axis}": moment for axis, moment in zip("xyz", (5e-16, 5e-16, 1e-15), strict=True)}
 

@@ -184,12 +184,13 @@ JUMP = {"psi_dot_guide": 3.0, "theta_dot_guide": 0.5}
 
 
 @formulations
-def test_a_jump_meets_the_loads_that_are_set_with_it(library: Library, formulation: int) -> None:
+@pytest.mark.parametrize("s", [0.0, 0.01])
+def test_a_jump_meets_the_loads_that_are_set_with_it(library: Library, s: float, formulation: int) -> None:
     """As if they were in force before it: a brake holds the wheel that the jump alone would turn."""
     for brake in (0.0, 3e4):
         with library.wheel() as together, library.wheel() as before:
             for w in (together, before):
-                w.start(**HELD, formulation=formulation).put(M_brake=3e4 - brake).by(0.01)
+                w.start(**HELD | {"s": s}, formulation=formulation).put(M_brake=3e4 - brake).by(0.01)
             found = together.put(**JUMP, M_brake=brake).get(*ANSWERS)
             assert before.put(M_brake=brake).by(0.0).put(**JUMP).get(*ANSWERS) == found
             assert together.by(0.0).get(*ANSWERS) == found
