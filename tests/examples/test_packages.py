@@ -2,10 +2,12 @@
 their own start at their own step. SI units.
 """
 
+import os
 import re
 import runpy
 import shlex
 import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,9 +29,10 @@ OUT_AND_BACK = (47.5, 3 * np.tanh(1.75)), (104.0, 0.0)  # X and Y of the path
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (recipe,) = re.findall(r"```\n(project=.*?)```", (VEHICLES / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     folder = tmp_path_factory.mktemp("copy")
-    recipe = recipe.replace("/path/to/this/checkout", str(ROOT)).replace("$project/wheel.fmu", "$wheel")
+    recipe = recipe.replace("/path/to/this/checkout", str(ROOT)).replace("$project/dist/wheel.fmu", "$wheel")
     commands = f"wheel={shlex.quote(str(build_folder() / 'wheel.fmu'))}\n{recipe}"
-    subprocess.run(["bash", "-e", "-c", commands], cwd=folder, check=True, capture_output=True)
+    active = os.environ | {"VIRTUAL_ENV": sys.prefix}
+    subprocess.run(["bash", "-e", "-c", commands], cwd=folder, env=active, check=True, capture_output=True)
     return folder / "build"
 
 
