@@ -31,7 +31,8 @@ RATES = ("lambda_1", "lambda_2", "tau", "v_y")
 
 
 def others(values: Values) -> Values:
-    return OTHERS | {name: not values.get(name, False) for name in ("keep_contact", "guided")}
+    flags = {name: not values.get(name, False) for name in ("keep_contact", "guided")}
+    return OTHERS | flags | {"mu_slide": 0.0 if "mu_slide" in values else 0.3}
 
 
 def answers(w: FMU2Wheel) -> list[object]:

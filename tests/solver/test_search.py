@@ -142,3 +142,19 @@ def test_a_quick_function_costs_nothing_before_it_comes_near_zero_and_once_it_is
     none, near = evaluations(None), evaluations(0.05)
     assert evaluations(1) == none and near[1] == none[1]
     assert near[0] > none[0]  # the partner
+
+
+def test_a_function_that_rests_at_zero_and_dips_later_in_the_step_falls_there(solver, method):
+    """Three samples are zero, zero and above; the dip lies between the last two."""
+    one = solver(method, "clock", each_step=lambda t, y: 0 if t < 0.65 else (t - 0.8) ** 2 - 0.0025)
+    assert one.run(1.0) == EVENT
+    within(absolute_error(one.now.known, 0.75), 64 * EPSILON, "instant of the fall, s")
+
+
+@pytest.mark.parametrize("falls", [(0.3, 0.4), (0.4, 0.3)])
+def test_of_two_falls_before_an_extreme_the_first_counts(solver, method, falls):
+    first, second = ((lambda t, y, at=at: at - t) for at in falls)
+    one = solver(method, "clock", each_step=first, later_listed=second, extremes=(0.5,))
+    assert one.run(1.0) == EVENT
+    within(absolute_error(one.now.known, 0.3), 64 * EPSILON, "instant of the fall, s")
+    assert one.now.fallen == 1 + falls.index(0.3)
