@@ -105,7 +105,8 @@ PUBLIC long long probe_run(Probe* probe, unsigned reference, double value, doubl
   const bool sound = wheel::start(wheel) &&
                      probe->solver.start(wheel::problem_of(wheel), solver::Method::runge_kutta, 0, wheel.setup.start);
   if (!sound || wheel::advance(wheel, t) != solver::Outcome::stepped) return -1;
-  std::copy_n(wheel::state_now(wheel), 8, y);
+  wheel::update_state(wheel);
+  std::copy_n(wheel.run.y, 8, y);
   return probe->solver.counters().steps;
 }
 
