@@ -2,7 +2,9 @@
 #include "inputs.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -14,9 +16,9 @@ namespace {
 double value_at(const double* c, double tau) { return c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])); }
 double rate_at(const double* c, double tau) { return c[1] + tau * (2 * c[2] + tau * 3 * c[3]); }
 
-// Whether a coefficient from the order `from` on is not zero.
-bool acts(const double* c, int from) {
-  return std::any_of(c + from, c + max_order + 1, [](double part) { return part != 0; });
+// Whether a coefficient is not zero.
+bool acts(const double* c) {
+  return std::any_of(c, c + max_order + 1, [](double part) { return part != 0; });
 }
 
 // (c) => real zeros of the slope c1 + 2 c2 x + 3 c3 x^2, of which one is infinite where c3 is zero; returns their
@@ -62,7 +64,15 @@ Span span_of(const double (&c)[max_order + 1], double tau) {
   return span;
 }
 
-bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input], 0) || acts(inputs[guide_input + 1], 0); }
+// By the bits but the sign: asked at each step, so without a branch.
+bool varies(const Polynomials& inputs) {
+  std::uint64_t bits = 0;
+  for (const auto& c : inputs)
+    for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
+  return bits << 1 != 0;
+}
+
+bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input]) || acts(inputs[guide_input + 1]); }
 
 double* load_entry(WheelLoad& load, int input) {
   if (input < 3) return &load.F[input];
@@ -90,13 +100,10 @@ WheelLoad Inputs::load_rate_at(double t) const {
 void Inputs::take_over(double t, const Polynomials& asked) {
   origin = t;
   std::memcpy(c, asked, sizeof c);
-  loaded = varies = false;
+  varies = wheel::varies(c);
   guides = is_guiding(c);
-  for (const auto& polynomial : c) {
-    loaded |= acts(polynomial, 0);
-    varies |= acts(polynomial, 1);
-  }
-  braked = acts(c[brake_input], 0);
+  loaded = std::any_of(std::begin(c), std::end(c), acts);
+  braked = acts(c[brake_input]);
 }
 
 bool Inputs::change_at(double t, double rounding, const Polynomials& asked) const {

@@ -17,6 +17,9 @@ inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
+// (inputs) => whether one depends on time
+bool varies(const Polynomials& inputs);
+
 // (inputs) => whether a rate of the carrier or one of its derivatives is not zero
 bool is_guiding(const Polynomials& inputs);
 
