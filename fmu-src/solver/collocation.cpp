@@ -103,8 +103,7 @@ void Collocation::prepare(const Problem& problem, const Step& step, Newtons* new
   const Eigen::Map<const Rates> f(&f_[0][0]);
   const auto along = [&](int i) -> Column { return (size_ * integral * f.col(i)).array() + step.y_start[i]; };
   const Row y_end = state_at(radau_points - 1, step, size_, f_);
-  const auto linearise = [&](const Settling& settling) {
-    Newtons::Newton newton;
+  const auto linearize = [&](const Settling& settling, Newtons::Newton& newton) {
     Column slopes;
     const Column values = along(settling.state);
     settling.slopes(problem.owner, step.end, y_end.data(), {values.data(), radau_points}, slopes.data(),
@@ -112,10 +111,9 @@ void Collocation::prepare(const Problem& problem, const Step& step, Newtons* new
     Square matrix = size_ * slopes.asDiagonal() * integral;
     matrix.diagonal() -= settling.speed == Settling::none ? Column::Ones() : along(settling.speed);
     newton.matrix.compute(matrix);
-    return newton;
   };
-  if (problem.steep) newtons->steep = linearise(*problem.steep);
-  if (problem.turning) newtons->turning = linearise(*problem.turning);
+  if (problem.steep) linearize(*problem.steep, newtons->steep);
+  if (problem.turning) linearize(*problem.turning, newtons->turning);
 }
 
 // (rates at the points) => better rates; returns the change of the states in units of the weights, infinite where rates
