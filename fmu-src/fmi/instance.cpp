@@ -84,7 +84,7 @@ fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::
   std::size_t computed = 0;
   while (computed < count && listed[computed] < wheel::stored_count) ++computed;
   if (computed == count || has_state(wheel.run.phase)) return fmi2OK;
-  if (!wheel::is_prepared(change())) return fmi2Discard;
+  if (!wheel::prepare_once(change())) return fmi2Discard;
   const bool readable = has_state(wheel.run.phase);
   const char* const name = wheel::row_of(listed[computed]).name;
   return check(readable, "%s: \"%s\" has no value before a successful initialization.", name) ? fmi2OK : fmi2Error;

@@ -24,7 +24,7 @@ template <class Read>
 auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* what, Read read) {
   return [=](Instance& i) {
     if (!check_count(i, values, count, needed)) return fmi2Error;
-    if (!wheel::is_prepared(i.change()) || !has_state(i.wheel.run.phase)) return fmi2Discard;
+    if (!wheel::prepare_once(i.change()) || !has_state(i.wheel.run.phase)) return fmi2Discard;
     read(i.change(), values);
     if (are_finite(values, count)) return fmi2OK;
     return i.log(Topic::discard, "%s: at t = %s s the %s are not finite.", i.wheel.time(), what);

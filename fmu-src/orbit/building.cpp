@@ -77,7 +77,7 @@ bool maps(const Nutation& nutation, const solver::Problem& problem, double t, co
 // side is its mirror image with time reversed.
 bool is_mirrored(const Nutation& nutation, const solver::Problem& problem) {
   const Course& course = nutation.course();
-  const Entry from_zero;
+  Entry from_zero;
   for (int i = 0; i < samples; ++i) {
     const double since = (i + 0.5) / samples * course.half_period(), t = course.T2 + since;
     const auto mirror = [&](double* rate) {

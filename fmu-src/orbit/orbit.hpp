@@ -124,10 +124,10 @@ struct Half {
   Pose pose = {};
 };
 
-// A run on a nutation, or none.
+// How a run lies on a nutation.
 struct Entry {
   Pose start = {};
-  double until = -1;         // s, how far it can be read; below zero: there is none
+  double until = -1;         // s, how far the owner may read it; below zero: no run has entered
   mutable Half latest = {};  // the half read last, a function of its number alone
 };
 

@@ -16,8 +16,8 @@ bool can_change_layer(const Setup& setup, const InForce& now) {
 
 // (y) => how far the spin is from the edge of the layer
 double way_to_layer(const Setup& setup, const InForce& now, double, const double* y) {
-  const double omega_z = y[WHEEL_OMEGA_3], edge = layer_edge(setup);
-  const double inside = edge - std::fabs(omega_z), outside = now.law().sigma * omega_z - edge;
+  const double omega_z = y[WHEEL_OMEGA_3], limit = layer_edge(setup);
+  const double inside = limit - std::fabs(omega_z), outside = now.law().sigma * omega_z - limit;
   return (now.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 

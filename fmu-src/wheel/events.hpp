@@ -22,7 +22,7 @@ struct EventRow {
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all; null: it reads all.
   int (*state)(const InForce& now) = nullptr;
-  double rounding = 0;                         // of an observed event: a value beyond zero by less does not count
+  double rounding = 0;                         // where `observed` is set: a value beyond zero by less does not count
   bool exchanged = true;                       // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
   // What is in force from here on, and the state (a rate of zero exactly), where it bends the motion.

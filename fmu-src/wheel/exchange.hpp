@@ -1,5 +1,5 @@
 // Model exchange. The caller's solver moves the states x (wheel_equations.h), from which y follows; an input acts from
-// the instant at which it is set; the law of friction is decided anew at events only.
+// the instant at which it is set; the law of friction is decided anew at events, and where a state or the road is set.
 #pragma once
 
 #include "wheel.hpp"

@@ -93,7 +93,8 @@ WheelLoad Inputs::load_rate_at(double t) const {
   WheelLoad rate = {};
   for (int i = 0; i < guide_input; ++i) *load_entry(rate, i) = rate_at(c[i], tau);
   for (int i = guide_input; i < inputs_count; ++i) *load_entry(rate, i) = 2 * c[i][2] + tau * 6 * c[i][3];
-  if (value_at(c[brake_input], tau) <= 0) rate.brake = std::fmax(rate.brake, 0);
+  const double asked = value_at(c[brake_input], tau);
+  if (asked <= 0) rate.brake = asked < 0 ? 0 : std::fmax(rate.brake, 0);
   return rate;
 }
 

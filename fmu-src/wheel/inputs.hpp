@@ -3,7 +3,7 @@
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along e1, e2, e3; M_brake [N m], the capacity of the
 // dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `guide`. What the caller asks for is
-// in force from the next step on.
+// in force from the next step on, in model exchange at once.
 #pragma once
 
 #include "wheel_equations.h"
@@ -44,7 +44,7 @@ struct Inputs {
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
   void set_load_at(double t, WheelLoad& load) const;
-  // A brake at zero can only be put on.
+  // A brake at zero can only be put on, and one whose polynomial is below zero rests.
   WheelLoad load_rate_at(double t) const;
   // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
   void stay(double t, Polynomials& asked) const;

@@ -116,7 +116,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
     y[WHEEL_CHI] = first_direction(scene, y);
   };
   if (may_be_held(setup, now, y)) {
-    for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {
+    for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {  // the last where none agrees
       take(law);
       if (agrees(setup, scene, y)) break;
     }

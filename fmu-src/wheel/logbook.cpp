@@ -61,6 +61,7 @@ void look_at_grip(Wheel& wheel, double t) {
   CONSTANT(double, dry_road, 1, "1", "the friction coefficient of a good tyre on a dry road");
   const Setup& setup = wheel.setup;
   const InForce& now = wheel.run.in_force;
+  t = std::fmin(t, wheel.solver.known_until());
   if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
   double y[max_states];
   wheel.solver.read(t, y);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "constant.hpp"
@@ -33,7 +32,7 @@ bool is_known(const Wheel& w, double t) {
 bool has_changed(const Wheel& w) {
   const InForce& now = w.run.in_force;
   const double t = w.run.t;
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * (std::fabs(w.demand.start_time) + std::fabs(t));
+  const double rounding = solver::rounding_at(std::fabs(w.demand.start_time) + std::fabs(t));
   return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
@@ -229,8 +228,7 @@ Outcome advance_by_stages(Wheel& w, double t) {
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
-  const bool may_vary = w.run.news != News::none || w.run.phase == Phase::at_start;
-  if (!may_vary || !varies(w.demand.inputs)) return {};
+  if (!varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;

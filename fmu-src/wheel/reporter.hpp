@@ -46,8 +46,8 @@ struct Reporter {
   virtual bool listens(Topic) const { return false; }
   virtual void take(Topic, const char*) const {}
 
-  // Printf-like, but a double and Digits are written as %s: times with all digits, so that a caller can go to exactly
-  // that instant. Nothing is formatted where nobody listens.
+  // Printf-like, but a double and Digits are written as %s, a double with all digits: a caller can go to exactly that
+  // instant. Nothing is formatted where nobody listens.
   template <class... Parts>
   void log(Topic topic, const char* format, Parts... parts) const {
     if (!listens(topic)) return;

@@ -8,7 +8,7 @@
 namespace wheel {
 
 // From the first parameter to the end: from the phase follows what can be read, what a step does, and which functions
-// of FMI may be called (fmi/legality.hpp).
+// of FMI may be called (fmi/legality.hpp). Their order counts: the three functions below compare.
 enum class Phase : int {
   created,          // parameters are being set
   initializing,     // initialization has begun; no initial state belongs to the present parameters yet
@@ -45,16 +45,15 @@ enum class Event : int {
 };
 inline constexpr int event_count = static_cast<int>(Event::count);
 
-// The road, which may change during a run. Its variables stand together, in this order.
+// The road, which may change during a run.
 struct Road {
   double s, mu_max, mu_slide, slope, slope_direction;
   bool operator==(const Road&) const = default;
 };
-static_assert(variable::slope_direction - variable::s == sizeof(Road) / sizeof(double) - 1);
 
 inline Road road_asked(const Demand& demand) {
-  const double* v = demand.parameters + variable::s;
-  return {v[0], v[1], v[2], v[3], v[4]};
+  const double* v = demand.parameters;
+  return {v[variable::s], v[variable::mu_max], v[variable::mu_slide], v[variable::slope], v[variable::slope_direction]};
 }
 
 // What acts on the wheel: road, inputs and observed events, the contact and the law of friction, and the scene that

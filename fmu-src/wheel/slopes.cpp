@@ -47,6 +47,7 @@ struct Quotients {
   }
   double of(unsigned variable) const { return slope[variable - stored_count]; }
 
+  // By value: what a reading has computed belongs to its place.
   Numbers sample(Reading reading) const {
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)

@@ -118,7 +118,7 @@ bool prepare(Record& r, const Reporter& reporter) {
   return run.phase == Phase::initial;
 }
 
-bool is_prepared(Wheel& w) {
+bool prepare_once(Wheel& w) {
   const Reporter nobody;
   const bool faulty = w.run.phase == Phase::faulty;
   return (w.run.phase != Phase::initializing && !faulty) || prepare(w, faulty ? nobody : w.reporter);

@@ -2,8 +2,9 @@
 // as far as it is known; and its run from the parameters to the end. The run has a clock, zero at the start, so that a
 // start time of 1e9 s costs no digits.
 //
-// A function changes nothing of a wheel that is passed as const, no solution of one that is passed as a Record, and
-// perhaps all of any other.
+// A function changes nothing of a wheel that is passed as const but values that are kept to save work: the polynomial
+// of a step, the half read last, the load of the instant asked for last. No two threads may read one wheel. Of one that
+// is passed as a Record it changes no solution, and perhaps all of any other.
 //
 // The other files of this folder, each below those that it needs:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
@@ -84,7 +85,7 @@ struct Wheel : Record {
   solver::Solver solver;
   orbit::Orbit orbit;
   Shape orbit_shape;      // for which `orbit` was built; it is entered where it is the present run's
-  long long endings = 0;  // logged, of all runs since the last reset, those that a state led back from included
+  long long endings = 0;  // of all runs since the last reset, logged or not, those that a state led back from included
 };
 
 // (variable) => whether it is a rate of a carrier, and one that does not turn
@@ -102,7 +103,7 @@ inline void update_state(Wheel& wheel) {
 
 Reading read_now(const Wheel& wheel);
 
-// As new: start values, nothing computed.
+// As new: start values, no state. The orbit is kept, for the next run of the same shape.
 void reset(Wheel& wheel);
 // stop_time: infinite for none. tolerance <= 0: the default one.
 void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
@@ -113,8 +114,9 @@ void set(Wheel& wheel, unsigned variable, double value, int order = 0);
 void begin_initialization(Wheel& wheel);
 // The initial state from the present parameters, true if it exists. Else one message per fault.
 bool prepare(Record& record, const Reporter& reporter);
-// Before the end of the initialization: `prepare` where it has not been done, with each message once.
-bool is_prepared(Wheel& wheel);
+// Before the end of the initialization: `prepare` where it has not been done, with each message once. True without it
+// where no initial state is due.
+bool prepare_once(Wheel& wheel);
 // The end of initialization: false if there is no initial state.
 bool start(Wheel& wheel);
 // The run ends at the instant reached, by an event.

@@ -50,6 +50,13 @@ def test_the_rates_of_a_carriers_course_count_until_something_is_set(wheel, scen
     beyond(np.max(np.abs(left - rates(w.put(**dict.fromkeys(TURN, 0.0))))), 1.0, "rates where the carrier stops")
 
 
+@pytest.mark.parametrize(("brake", "rate"), [((1.0, -3.0, 1.0), 0.0), ((3.0, -3.0, 1.0), 1.0)])
+def test_the_capacity_of_a_brake_rests_while_its_polynomial_is_below_zero(wheel, brake, rate):
+    """On a carrier, where inputs go on after their step; at 2 s both polynomials rise by 1 N m/s."""
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5, phi_dot_start=-20.0).give({"M_brake": brake}).by(2.0)
+    assert w.rates(["tau_brake"])() == pytest.approx([rate])
+
+
 def test_the_slope_of_a_load_ends_with_its_step(wheel):
     """A load has no course as a carrier has: it stays where it arrived, with the rates of one that is set there."""
     w = wheel().start(**GENERAL).give({"F_Y": (1.0, 5.0), "M_2": (0.5, -3.0)}).to(0.1)

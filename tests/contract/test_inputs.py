@@ -217,6 +217,13 @@ def test_a_step_in_which_an_input_would_leave_its_bounds_is_refused_and_leaves_t
     assert w.serialized() == before and w.give({name: (0.0,)}).by(1.0).serialized() != before
 
 
+def test_a_step_of_no_length_uses_no_derivative_up(wheel):
+    """It neither brings an input beyond its bounds nor lets the next step do so."""
+    for slope, status in ((9000.0, ERROR), (900.0, OK)):
+        w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5).by(0.1).give({"psi_dot_guide": (0.0, slope)})
+        assert (w.by(0.0).step(10.0), w.get("psi_dot_guide")) == (status, [0.0 if status else 9000.0])
+
+
 @pytest.mark.parametrize("name", ["M_brake", "F_Z", "psi_dot_guide", "theta_dot_guide"])
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("size", [0.5, -2.0, 3e4, 1.1e7, 1e301, 2e307])
