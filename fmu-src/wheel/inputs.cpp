@@ -69,7 +69,7 @@ bool varies(const Polynomials& inputs) {
   std::uint64_t bits = 0;
   for (const auto& c : inputs)
     for (int k = 1; k <= max_order; ++k) bits |= std::bit_cast<std::uint64_t>(c[k]);
-  return bits << 1 != 0;
+  return bits << 1U != 0;
 }
 
 bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input]) || acts(inputs[guide_input + 1]); }
@@ -103,7 +103,7 @@ void Inputs::take_over(double t, const Polynomials& asked) {
   std::memcpy(c, asked, sizeof c);
   varies = wheel::varies(c);
   guides = is_guiding(c);
-  loaded = std::any_of(std::begin(c), std::end(c), acts);
+  loaded = std::any_of(c, c + inputs_count, acts);
   braked = acts(c[brake_input]);
 }
 

@@ -228,7 +228,8 @@ Outcome advance_by_stages(Wheel& w, double t) {
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
-  if (!varies(w.demand.inputs)) return {};
+  const bool may_vary = w.run.news != News::none || w.run.phase == Phase::at_start || w.run.in_force.inputs.varies;
+  if (!may_vary || !varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
