@@ -146,9 +146,9 @@ double turning_point(const solver::Problem& problem, double before, solver::Solv
 }
 
 // Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
-//   omega_1 changes its sign for the second time: unfolded, or none if the swing between both is no larger than errors;
-//   an event ends the motion: ended;
-//   an event bends it, a step fails, or the track is full: none.
+//   omega_1 changes its sign for the second time: it repeats, unless the swing between both is no larger than errors;
+//   an event ends the motion: up to there;
+//   an event bends it, a step fails, or the track is full: no course.
 Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
   const solver::Problem& problem = motion.problem;
   double y[states], weights[states], swing = 0, before = motion.y0[WHEEL_OMEGA_1];

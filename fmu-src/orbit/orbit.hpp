@@ -20,7 +20,7 @@
 // From the question to the answer, each type written in one place and constant from then on:
 //
 //   FreeMotion   by the owner: the problem and its start
-//   Course       by stepping along it (building.cpp): the integrated motion, in a frame of its own
+//   Course       by stepping along it (building.cpp): the integrated motion, in its own frame
 //   Nutation     by its constructor, of a course: the terms from which any other half follows
 //   Entry        by Orbit::enter: the run on a nutation, from its own heading, roll angle and place
 //

@@ -14,7 +14,7 @@ namespace {
 
 const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
 
-// (t, y) => y_dot; returns the least margin. Of few states are only the equations of a wheel that rolls. States beyond
+// (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls. States beyond
 // those of the equations rest.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {

@@ -1,4 +1,4 @@
-"""The rules of docs/vehicle.md for coupling a wheel, each against a system of its own. SI units, the paper's wheel."""
+"""The rules of docs/vehicle.md for coupling a wheel, each against its own system. SI units, the paper's wheel."""
 
 import runpy
 from collections.abc import Callable

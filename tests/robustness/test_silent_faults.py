@@ -30,7 +30,7 @@ def test_a_ground_that_pulls_often_is_logged_once_per_run_at_an_instant_that_no_
         restored = wheel().back(w.serialized()).to(200.0)
         assert w.terminate() == w.reset() == OK and pulls_of(restored) == []
         logs.append(pulls_of(w))
-        w.start(method=method, **PULLED).to(100.0)  # a run of its own
+        w.start(method=method, **PULLED).to(100.0)  # each in a new run
         assert pulls_of(w) == 2 * logs[-1]
     assert logs[0] == logs[1] == logs[2] and len(logs[0]) == 1
 

@@ -1,7 +1,7 @@
 """The chosen constants of fmu-src (support/constant.hpp), and the consequence of half and double, over random scenes.
 
 An error is the distance of a run from one at a tolerance of 1e-12, over the tolerance and over the growth of a small
-change of the start. Each run is of the build `constants`, in a process of its own for each constant and factor.
+change of the start. Each run is of the build `constants`, in a new process for each constant and factor.
 """
 
 import ast
@@ -183,7 +183,7 @@ def judged(folder: str, known: Judge, changed: tuple[str, float]) -> pd.DataFram
 def measured(folder: str, chosen: Sequence[Constant]) -> pd.DataFrame:
     """A row for each constant and factor: the kinds of scenes whose error and whose evaluations grow most.
 
-    Each runs in a process of its own: a library reads the environment where it is loaded.
+    Each runs in a new process: a library reads the environment where it is loaded.
     """
     asked = [("", 1.0), *((each.name, factor) for each in chosen for factor in FACTORS)]
     context, rows = get_context("fork"), []
