@@ -113,6 +113,8 @@ def test_the_shift_of_transitions_is_the_true_one(wheel: Wheel) -> None:
     assert found.counts == (37, 37)
     within(relative_error(found.shift, true), 3e-3, "estimated shift, relative")
     assert "37 transitions, shifted by up to" in found.said("A") and "computing time" in found.said("A")
+    for seconds, words in ((-6e-6, "below 0.01 ms."), (4e-5, "0.04 ms.")):  # the difference of two times
+        assert found._replace(seconds=seconds).said("A").endswith(f"; computing time {words}")
     few = run._replace(events=run.events[:-1])
     assert "36 transitions, 37 by the other solver" in trust(few, truth).said("A")
 

@@ -21,6 +21,7 @@ from .errors import by_instant
 from .motion import Library
 
 DEFAULT, TIGHTEST = 1e-8, 1e-13  # tolerances
+RESOLVED = 1e-5  # s, of a run: the difference of two measured times has no smaller ones
 REPEATS, LONG = 9, 0.1  # of a run to be timed, and seconds after which none is begun
 ROUNDING = 1e-11  # of the range: errors below are those of rounding and of the tightest tolerance too
 DIGITS, PARTED = 1e-3, 1e6  # a difference that spoils three digits; its growth where both runs part
@@ -129,7 +130,8 @@ class Trust(NamedTuple):
             shifted = f"shifted by up to {self.shift:.1e} s" if self.shift else "not shifted"
             located = f"; {' and '.join(found)}, {shifted}"
         unstable = "unstable or chaotic: " * (self.until is not None)
-        return f"{label}: {unstable}{self.short}, {self.judge}{located}; computing time {1e3 * self.seconds:.3g} ms."
+        time = f"{1e3 * self.seconds:.3g}" if not self.seconds < RESOLVED else f"below {1e3 * RESOLVED:g}"
+        return f"{label}: {unstable}{self.short}, {self.judge}{located}; computing time {time} ms."
 
 
 def trust(run: Motion, truth: Motion, scales: Array | float = 1.0) -> Trust:
