@@ -7,8 +7,8 @@ namespace wheel {
 
 // The run stands at an event that does not end it: what follows is in force, counted and logged.
 solver::Consequence pass_event(Wheel& wheel, Event event);
-// An observed event at t, s, clock of the run: the first of a run is logged.
-void observe(Wheel& wheel, Event event, double t);
+// An event that is observed has occurred at t, s, clock of the run: the first of a run is logged.
+void log_observation(Wheel& wheel, Event event, double t);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
 // spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
 void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
@@ -19,7 +19,7 @@ void look_at_grip(Wheel& wheel, double t);
 // step ends the run.
 void warn_of_jam(const Wheel& wheel, const Reading& reading);
 
-// Of an ending; of very many, as of a search that goes back and tries again, the first ones alone.
+// Of very many endings, as in a search that goes back and tries again, the first ones alone are logged.
 void log_ending(Wheel& wheel, Event event);
 // What ended a run, to stand behind "the wheel", with its limit.
 struct Ending {
