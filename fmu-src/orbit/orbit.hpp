@@ -81,7 +81,7 @@ class Track {
     double start, end, c[degree + 1][states];  // as in Step
   };
 
-  std::unique_ptr<Piece, void (*)(void*)> pieces_{nullptr, std::free};
+  std::unique_ptr<Piece, void (*)(void*)> pieces_{nullptr, std::free};  // a vector without memory would throw
   int count_ = 0;
   mutable int latest_ = 0;  // the piece read last
 };

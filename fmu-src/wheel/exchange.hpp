@@ -22,7 +22,8 @@ void enter(Wheel& wheel, Phase mode);
 // (time: s, the caller's)
 void set_time(Wheel& wheel, double time);
 void set_states(Wheel& wheel, const double* x);
-// Of a variable that is a state, by itself: the law of friction is decided for it.
+// Of a variable that is a state, by itself: the law of friction is decided for it. A state that is only tried is no
+// event, and nothing is logged.
 void set_state(Wheel& wheel, unsigned variable, double value);
 
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins,

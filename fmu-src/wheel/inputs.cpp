@@ -142,7 +142,8 @@ double Inputs::corner(double t, double until) const {
   int pieces = extremes(t, until, ends);
   ends[pieces++] = until;
   for (int i = 0; i < pieces; ++i) {
-    double lo = t, hi = t = ends[i];
+    double lo = t, hi = ends[i];
+    t = ends[i];
     if (brakes(lo) == brakes(hi)) continue;
     for (;;) {
       const double middle = lo + 0.5 * (hi - lo);

@@ -12,8 +12,9 @@ void log_observation(Wheel& wheel, Event event, double t);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
 // spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
 void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
-// Once per run, where a loaded wheel on a road without a limit is found to need a friction coefficient above 1, at t at
-// the latest, s, clock of the run. Looks a few times in the wheel's time scale, so that it costs nothing noticeable.
+// Warns once per run where a loaded wheel, on a road without a limit, needs a friction coefficient above 1: at t, or as
+// far as the solution is known, s, clock of the run. It looks a few times in the wheel's time scale, so that it costs
+// nothing noticeable.
 void look_at_grip(Wheel& wheel, double t);
 // Where a road that was set makes the wheel jam: the reading has no force that satisfies the equations, and the next
 // step ends the run.

@@ -38,9 +38,9 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 }
 
 // (theta, heading_rate: |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2
-// / sin(theta) magnifies that of theta, of which a tenth is left over many steps. In (24) accelerations of the size of
-// r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip,
-// which follows them at once.
+// / sin(theta) magnifies that of theta, whose sign changes from step to step: over many, a tenth remains. In (24)
+// accelerations of the size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole
+// on the direction of a slip, which follows them at once.
 double rounding_of_rates(double theta, double heading_rate, bool slides) {
   const double cancels = slides ? heading_rate * heading_rate : heading_rate;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
