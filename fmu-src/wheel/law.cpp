@@ -81,7 +81,8 @@ void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene&
     motion.theta_dot = k.theta_dot;
     WheelScene ramp = scene;
     ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);  // what was set asks for it before the ramp
-    const double hold = ramp.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
+    const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
+    const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
     if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
       ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
     wheel_jump(&ramp, hold, psi_dot, theta_dot, &motion);
