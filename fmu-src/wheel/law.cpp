@@ -68,7 +68,8 @@ void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelSc
   WheelScene ramp = scene;
   // The jump is a ramp that takes no time: only a brake that presses at this instant acts in it.
   ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);
-  const double hold = ramp.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
+  const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
+  const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
   if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
     ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   wheel_jump(&ramp, hold, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), &motion);

@@ -19,8 +19,7 @@ const WheelScene& scene_at(const InForce& now, double t, WheelScene& room) {
   return now.inputs.varies ? room = now.scene_at(t) : now.scene;
 }
 
-// (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls. States beyond
-// those of the equations rest.
+// (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = record_of(owner).setup;
@@ -30,7 +29,6 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   const WheelFormulation& formulation =
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
   const double N = formulation.derivative(&scene, y, y_dot);
-  if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();

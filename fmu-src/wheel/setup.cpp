@@ -51,7 +51,7 @@ void set_error_scales(Setup& setup) {
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
   const double scales[max_states] = {
-      1, rate, rate, rate, loose, loose, loose * length, loose * length, setup.slip_scale, 1, 1, 1};
+      1, rate, rate, rate, loose, loose, loose * length, loose * length, setup.slip_scale, 1};
   std::copy_n(scales, max_states, setup.slow_scales);
 }
 

@@ -16,9 +16,10 @@ namespace wheel {
 // energy stays below it (docs/results/accuracy.md).
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
-// Room for a state y (wheel_equations.h), as wide as the solver's. A wheel that slides has ten states; the two behind
-// them rest, and count in the mean of an error.
+// Room for a state y (wheel_equations.h), as wide as the solver's: that of a wheel that slides. A wheel that rolls has
+// eight states.
 using solver::max_states;
+static_assert(max_states == WHEEL_SLIDING_STATES);
 
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
