@@ -1,4 +1,4 @@
-// Half a nutation of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
+// Half a swing of the free wheel is integrated, and its symmetry is tested against the right-hand side. Reduced
 // form, non-spinning frame.
 //
 // `integrate`, once for each motion: `steady_course` tries the start for a circle or a straight line; if it is neither,
@@ -28,8 +28,7 @@ namespace {
 
 CONSTANT(double, finer, 0.05, "of the tolerance", "for the integrated half, whose error every half of the run repeats");
 CONSTANT(double, finest, 1e-14, "1", "the tightest tolerance that rounding allows");
-CONSTANT(double, loosest, 1e-8, "1",
-         "a looser tolerance saves little in one nutation, and its steps are less accurate");
+CONSTANT(double, loosest, 1e-8, "1", "a looser tolerance saves little in one swing, and its steps are less accurate");
 CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every half of the run repeats these few steps");
 CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may consist of the errors of a few steps");
 CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
@@ -68,11 +67,11 @@ Lean lean_of(const solver::Problem& problem, const double* y0) {
 // (motion at t, its image at t_image on the run of `entry`, a map of rates) => whether the right-hand side at the image
 // is the mapped one, and every watched function is the same.
 template <class Map>
-bool maps(const Nutation& nutation, const solver::Problem& problem, double t, const Entry& entry, double t_image,
+bool maps(const Swing& swing, const solver::Problem& problem, double t, const Entry& entry, double t_image,
           const Map& map) {
   double y[states], image[states], expected[states], rate[states], weights[states];
-  nutation.course().read(t, y);
-  nutation.read(entry, t_image, image);
+  swing.course().read(t, y);
+  swing.read(entry, t_image, image);
   problem.derivative(problem.owner, t, y, expected);
   map(expected);
   problem.derivative(problem.owner, t_image, image, rate);
@@ -88,26 +87,28 @@ bool maps(const Nutation& nutation, const solver::Problem& problem, double t, co
 
 // Whether the half from T1 to T2 represents the whole motion: as long after T2 as a state was before, the right-hand
 // side is its mirror image with time reversed.
-bool is_mirrored(const Nutation& nutation, const solver::Problem& problem) {
-  const Course& course = nutation.course();
+bool is_mirrored(const Swing& swing, const solver::Problem& problem) {
+  const Course& course = swing.course();
   Entry from_zero;  // read without a run
   for (int i = 0; i < samples; ++i) {
     const double since = (i + 0.5) / samples * course.half_period(), t = course.T2 + since;
-    const auto mirror = [&](double* rate) {
+    const auto mirror = [&](double* rate) {  // the images of orbit.cpp, differentiated by time
       for (const int k : {WHEEL_THETA, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) rate[k] = -rate[k];
-      set_place(rate, -nutation.half_of(from_zero, t).pose.rotation * std::conj(place_of(rate)));
+      set_place(rate, -swing.half_of(from_zero, t).pose.rotation * std::conj(place_of(rate)));
     };
-    if (!maps(nutation, problem, course.T2 - since, from_zero, t, mirror)) return false;
+    if (!maps(swing, problem, course.T2 - since, from_zero, t, mirror)) return false;
   }
   return course.half_period() > 0;
 }
 
 // The circle or straight line of a start in steady motion: omega_1 = 0 except for rounding, a small lean swings instead
 // of growing, and no event occurs; or it leans without consequence. Then the initial state repeats for ever.
-Course steady_course(const solver::Problem& problem, const double* y0) {
+Course steady_course(const FreeMotion& motion) {
   CONSTANT(double, least_stiffness, 1e-3, "1", "of the slowest swing's, squared: a lean that swings slower may grow");
   CONSTANT(double, piece, 0.2, "rad", "of heading in a piece of a circle");
-  const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 0.5 / problem.longest_step;
+  const solver::Problem& problem = motion.problem;
+  const double* const y0 = motion.y0;
+  const double omega_1 = y0[WHEEL_OMEGA_1], slowest = 1 / motion.time_scale;
   Circle circle;
   std::copy_n(y0, states, circle.y0);
   circle.y0[WHEEL_OMEGA_1] = 0;
@@ -151,8 +152,9 @@ solver::Outcome step(const FreeMotion& motion, solver::Solver& solver, Course& c
 
 // (last step) => instant at which omega_1 falls through zero, seen from the side of `before`, on which the step begins
 double turning_point(const solver::Problem& problem, double before, solver::Solver& solver) {
-  const auto value = [](void*, int side, double, const double* y) { return side * y[WHEEL_OMEGA_1]; };
-  const solver::Watched watched = {before > 0 ? 1 : -1, value, false, WHEEL_OMEGA_1};
+  const auto above = [](void*, int, double, const double* y) { return y[WHEEL_OMEGA_1]; };
+  const auto below = [](void*, int, double, const double* y) { return -y[WHEEL_OMEGA_1]; };
+  const solver::Watched watched = {0, before > 0 ? +above : +below, false, WHEEL_OMEGA_1};
   const double end = solver.known_until();
   long long uncounted = 0;
   const solver::Search search = {problem, solver.last_step(), watched, {}, &uncounted};
@@ -160,7 +162,7 @@ double turning_point(const solver::Problem& problem, double before, solver::Solv
 }
 
 // Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
-//   omega_1 changes its sign for the second time: it repeats, unless the swing between both is no larger than errors;
+//   omega_1 changes its sign at T2: it repeats, unless the swing since T1 is no larger than errors;
 //   an event ends the motion: up to there;
 //   an event bends it, a step fails, or the track is full: no course.
 Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
@@ -170,17 +172,21 @@ Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
   if (!solver.start(problem, solver::Method::runge_kutta, 0, motion.y0)) return {};
   Course course;
   Track& track = course.path.emplace<Track>();
-  std::optional<double> T1 = before == 0 ? std::optional(0.0) : std::nullopt;
+  bool has_T1 = before == 0;
   for (;;) {
     const solver::Outcome outcome = step(motion, solver, course);
     if (outcome == solver::Outcome::failed || !track.add(solver.last_step())) return {};
     solver.read(solver.known_until(), y);
     const double now = y[WHEEL_OMEGA_1];
     if (now != 0 && before != 0 && std::signbit(now) != std::signbit(before)) {
-      course.T2 = turning_point(problem, before, solver);
-      if (T1 && swing * weights[WHEEL_OMEGA_1] < least_swing) return {};
-      if (T1) break;
-      T1 = course.T1 = course.T2;
+      const double turning = turning_point(problem, before, solver);
+      if (has_T1) {
+        course.T2 = turning;
+        if (swing * weights[WHEEL_OMEGA_1] < least_swing) return {};
+        break;
+      }
+      course.T1 = turning;
+      has_T1 = true;
       swing = 0;
     }
     if (outcome == solver::Outcome::event) {
@@ -196,19 +202,19 @@ Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
 }
 
 // From zeros in psi, phi, X_O and Y_O. None where the motion is refused.
-Nutation integrate(const FreeMotion& given, solver::Solver& solver) {
+Swing integrate(const FreeMotion& given, solver::Solver& solver) {
   double y0[states] = {};
   for (const int i : {WHEEL_THETA, WHEEL_OMEGA_1, WHEEL_OMEGA_2, WHEEL_OMEGA_3}) y0[i] = given.y0[i];
   FreeMotion motion = given;
   motion.y0 = y0;
   motion.problem.share = std::fmax(std::fmin(finer, loosest / given.tolerance), finest / given.tolerance);
   motion.problem.longest_step *= shortening;
-  Course course = steady_course(motion.problem, y0);
+  Course course = steady_course(motion);
   if (!course.exists()) course = stepped_course(motion, solver);
   if (!course.exists()) return {};
-  Nutation nutation(std::move(course));
-  if (!nutation.course().ending && !is_mirrored(nutation, motion.problem)) return {};
-  return nutation;
+  Swing swing(std::move(course));
+  if (!swing.course().ending && !is_mirrored(swing, motion.problem)) return {};
+  return swing;
 }
 
 }  // namespace
@@ -216,16 +222,16 @@ Nutation integrate(const FreeMotion& given, solver::Solver& solver) {
 bool Orbit::enter(const FreeMotion& motion, solver::Solver& solver) {
   leave();
   const auto& shape = motion.shape;
-  if (!any_ || !std::equal(shape.begin(), shape.end(), shape_.begin())) {
-    any_ = true;
+  if (!has_integrated_ || !std::equal(shape.begin(), shape.end(), shape_.begin())) {
+    has_integrated_ = true;
     std::copy(shape.begin(), shape.end(), shape_.begin());
-    nutation_ = integrate(motion, solver);
+    swing_ = integrate(motion, solver);
   }
   if (!course().exists()) return false;
-  const Entry entry = nutation_.entry_at(motion.y0, motion.most_angle);
+  const Entry entry = swing_.entry_at(motion.y0, motion.most_angle);
   const double t = course().T1 + on_the_way * course().half_period();
   const auto turn = [&](double* rate) { set_place(rate, entry.start.rotation * place_of(rate)); };
-  if (maps(nutation_, motion.problem, t, entry, t, turn)) entry_ = entry;
+  if (maps(swing_, motion.problem, t, entry, t, turn)) entry_ = entry;
   return until() >= 0;
 }
 

@@ -1,4 +1,4 @@
-// Any instant of the free wheel, read from half a nutation by reflections and sums.
+// Any instant of the free wheel, read from half a swing by reflections and sums.
 #include "orbit.hpp"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ void Pose::carry(Complex way, double* y) const {
   set_place(y, place + rotation * way);
 }
 
-Nutation::Nutation(Course&& course) : course_(std::move(course)) {
+Swing::Swing(Course&& course) : course_(std::move(course)) {
   if (course_.ending) return;
   course_.read(course_.T1, at_T1_);
   course_.read(course_.T2, at_T2_);
@@ -63,16 +63,23 @@ Nutation::Nutation(Course&& course) : course_(std::move(course)) {
   mirror_rotation_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
 }
 
-Entry Nutation::entry_at(const double* y0, double most_angle) const {
+Entry Swing::entry_at(const double* y0, double most_angle) const {
   const double growth = std::fmax(std::fabs(psi_growth_), std::fabs(phi_growth_));
   const double until = course_.ending ? course_.T2 : most_angle / (growth / course_.half_period());
   return {{y0[WHEEL_PSI], y0[WHEEL_PHI], place_of(y0), std::polar(1.0, y0[WHEEL_PSI])}, until};
 }
 
+// About a turning point T the motion is its own mirror image, with time reversed:
+//   theta, omega_2, omega_3 at T + s are those at T - s, and omega_1 has the other sign;
+//   psi(T + s) = 2 psi(T) - psi(T - s), and phi likewise;
+//   O(T + s) - O(T) = -exp(2 i psi(T)) conj(O(T - s) - O(T)).
+// The last holds because the velocity of O is exp(i psi) (a + i b), where a, along e1, is a function of omega_3, and b,
+// across it, has the sign of omega_1.
+//
 // (k) => the half k. The k halves before it are the integrated one and its mirror image in turn. A pair of them turns
 // the path by 2 delta; with d the displacement of O in the first half, n pairs carry O by a geometric sum,
 // 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
-Half Nutation::half_at(double k, const Pose& start) const {
+Half Swing::half_at(double k, const Pose& start) const {
   const double n = std::floor(0.5 * k);
   const bool mirrored = k != 2 * n;
   const Complex chord = std::polar(1.0, n * delta_), pairs_rotation = chord * chord;
@@ -87,7 +94,7 @@ Half Nutation::half_at(double k, const Pose& start) const {
   return {begin_of(k), begin_of(k + 1), mirrored, pose};
 }
 
-const Half& Nutation::half_of(const Entry& entry, double t) const {
+const Half& Swing::half_of(const Entry& entry, double t) const {
   if (t >= entry.latest.begin && t < entry.latest.next) return entry.latest;
   double k = std::floor((t - course_.T1) / course_.half_period());
   if (t < begin_of(k)) k -= 1;
@@ -95,7 +102,7 @@ const Half& Nutation::half_of(const Entry& entry, double t) const {
   return entry.latest = half_at(k, entry.start);
 }
 
-void Nutation::read(const Entry& entry, double t, double* y) const {
+void Swing::read(const Entry& entry, double t, double* y) const {
   const Track* const track = std::get_if<Track>(&course_.path);
   if (!track || t <= course_.T2) {
     course_.read(t, y);

@@ -1,11 +1,11 @@
-// The free wheel unfolded: without friction, brake and load, and with J_x = J_y or on a wheel carrier, half a nutation
+// A wheel unfolded: without friction, brake and load, and with J_x = J_y or on a wheel carrier, half a swing
 // holds the whole motion.
 //
 // Along the motion omega_2 and omega_3 are functions of theta alone (Chaplygin), so theta swings to and fro between two
 // turning points (omega_1 = theta_dot = 0). The equations are the same with time reversed: about a turning point T,
 // theta, omega_2 and omega_3 are even in t - T and omega_1 is odd; psi and phi are odd about their values at T, and the
 // path of O is its own mirror image. The motion is integrated up to the second turning point T2; every later instant is
-// read from the half nutation between T1 and T2. The error grows in proportion to t, and the cost does not grow.
+// read from the half swing between T1 and T2. The error grows in proportion to t, and the cost does not grow.
 //
 // Heading, roll angle and place of the start are symmetries too: the motion is integrated from zeros, and psi, phi, X_O
 // and Y_O of the start are added when it is read. Many turns at the start cost no digits.
@@ -22,8 +22,8 @@
 //
 //   FreeMotion   by the owner: the problem and its start
 //   Course       by stepping along it (building.cpp): the integrated motion, in its own frame
-//   Nutation     by its constructor, of a course: the terms from which any other half follows
-//   Entry        by Orbit::enter: the run on a nutation, from its own heading, roll angle and place
+//   Swing     by its constructor, of a course: the terms from which any other half follows
+//   Entry        by Orbit::enter: the run on a swing, from its own heading, roll angle and place
 //
 // State of the reduced form (wheel_equations.h). Time in s, zero at the start. Path of O as X_O + i Y_O.
 #pragma once
@@ -54,6 +54,7 @@ inline void set_place(double* y, Complex place) {
 struct FreeMotion {
   solver::Problem problem;
   double tolerance;
+  double time_scale;  // s, of the wheel's motion
   // What follows from an event at t and y, for the problem's owner to decide; where the motion bends it cannot be
   // unfolded. From then on the owner may answer the problem otherwise, as to which side of a limit is watched.
   solver::Consequence (*on_event)(void* owner, int event, double t, double* y);
@@ -100,7 +101,7 @@ struct Course {
 
   std::variant<std::monostate, Track, Circle> path;  // from the start past T2
   double T1 = 0, T2 = 0;
-  std::optional<int> ending;  // the event that ends the motion at T2, in its first nutation; none: it never ends
+  std::optional<int> ending;  // the event that ends the motion at T2, in its first swing; none: it never ends
   // When an event after which the motion goes on first occurs, and the first of all; infinite: never. It recurs in
   // each mirror image.
   std::array<double, solver::max_watched + 1> first_times;
@@ -108,7 +109,7 @@ struct Course {
   solver::Counters counters = {};  // of the integration; zero for a wheel in steady motion
 
   bool exists() const { return !std::holds_alternative<std::monostate>(path); }
-  double half_period() const { return T2 - T1; }  // s, of theta's nutation, or the length of the piece
+  double half_period() const { return T2 - T1; }  // s, of theta's swing, or the length of the piece
   // (0 <= t <= T2, of a steady motion any t) => y in the frame of the course
   void read(double t, double* y) const;
 };
@@ -123,24 +124,24 @@ struct Pose {
   void carry(Complex way, double* y) const;
 };
 
-// The half nutation from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
+// The half swing from T1 + k L to T1 + (k + 1) L, L = T2 - T1.
 struct Half {
   double begin = 0, next = 0;
   bool mirrored = false;
   Pose pose = {};
 };
 
-// How a run lies on a nutation.
+// How a run lies on a swing.
 struct Entry {
   Pose start = {};
   double until = -1;         // s, how far the owner may read it; below zero: no run has entered
   mutable Half latest = {};  // the half read last, a function of its number alone
 };
 
-class Nutation {
+class Swing {
  public:
-  Nutation() = default;  // of no course
-  explicit Nutation(Course&& course);
+  Swing() = default;  // of no course
+  explicit Swing(Course&& course);
 
   const Course& course() const { return course_; }
   // (start of a run, rad by which psi or phi may turn) => the run
@@ -167,7 +168,7 @@ class Nutation {
 class Orbit {
  public:
   // Integrates the motion by DOP853, unless it has the shape of the one integrated last. The solver has to be started
-  // anew before anything else is asked of it. The nutation is a function of problem, tolerance, theta and the rates in
+  // anew before anything else is asked of it. The swing is a function of problem, tolerance, theta and the rates in
   // y0 alone: bit-identical in every process and from every place and heading. False, and the orbit is left, where the
   // motion is refused (building.cpp): the caller then steps through it from its start.
   bool enter(const FreeMotion& motion, solver::Solver& solver);
@@ -176,14 +177,14 @@ class Orbit {
   // s; below zero where the orbit is left
   double until() const { return entry_.until; }
   // Of an orbit that is entered.
-  const Course& course() const { return nutation_.course(); }
-  void read(double t, double* y) const { nutation_.read(entry_, t, y); }
+  const Course& course() const { return swing_.course(); }
+  void read(double t, double* y) const { swing_.read(entry_, t, y); }
 
  private:
   // The motion integrated last, if there was one; of no course where it was refused.
-  bool any_ = false;
+  bool has_integrated_ = false;
   std::array<double, most_shape> shape_ = {};
-  Nutation nutation_;
+  Swing swing_;
   Entry entry_;  // on it, of the present run
 };
 

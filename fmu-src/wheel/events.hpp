@@ -13,15 +13,17 @@ CONSTANT(double, spin_error, 1e-3, "of the scale of rates", "beyond zero by less
 
 inline int all_states(const InForce&) { return -1; }
 
-// Two rows are treated by name in exchange.cpp: a spin that the caller has set is no event of `spin_changes`, and
-// `lies_flat` alone is asked for beyond flat.
+// A row by itself is enough for the solver and for snapshots. Named elsewhere are, in exchange.cpp, `spin_changes`,
+// which a spin that the caller has set does not count for, `lies_flat`, which alone is asked for beyond flat, and
+// `lost_contact`, which decides the ground's side (run.cpp too); `jams` in motion.cpp and wheel.cpp; and in messages.
 struct EventRow {
   Event event;
   // Whether it can occur, given what is in force.
   bool (*can_occur)(const Setup& setup, const InForce& now);
-  // Its value is smooth, scaled to about one, and positive until the event; that of an observed event changes its sign
-  // there again and again. A row has one of these two. The quick one takes state and normal force, N, which come with
-  // the rates: the solver looks at it only where it comes near zero.
+  // Its value is smooth, scaled to about one, and positive until the event; without friction, where a brake asks for a
+  // law, it is zero until one is set. The value of an observed event changes its sign again and again. A row has one of
+  // these two. The quick one takes state and normal force, N, which come with the rates: the solver looks at it only
+  // where it comes near zero.
   double (*value)(const Setup& setup, const InForce& now, double t, const double* y) = nullptr;
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all.
@@ -47,7 +49,9 @@ inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends 
 // Logged where it first occurs in a run.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observation && !ends_run(row, setup); }
 
-// An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
+// An event that does not end the run: what follows is in force. One that is observed alone changes nothing else. A run
+// passes it by pass_event (transitions.hpp), which counts and logs too; follow_on_orbit (posed_problem.hpp) follows it
+// ahead of the run; and after a motion in which none was followed, find_below finds those that are observed.
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
 
 // (row, t, y) => its margin

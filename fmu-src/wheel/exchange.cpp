@@ -9,6 +9,7 @@
 #include "events.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
+#include "transitions.hpp"
 
 namespace wheel {
 namespace {
@@ -98,7 +99,7 @@ bool decide_anew(Wheel& w) {
     follow_event(spin_changes, w.setup, run.t, run.y, run.in_force);
   else
     decide_law(w.setup, run.t, run.y, run.in_force);
-  log_changes(w, before);
+  note_changes(w, before);
   if (ends_here()) return false;  // under the law that was decided
   return omega_z != spin || differ(before.law(), run.in_force.law()) ||
          before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
@@ -126,7 +127,7 @@ void act_at_once(Wheel& w) {
   w.run.pending = Pending::nothing;
   if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);
-  log_changes(w, before);
+  note_changes(w, before);
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.

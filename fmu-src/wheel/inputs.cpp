@@ -25,7 +25,7 @@ bool acts(const double* c) {
 // number
 int zeros_of_slope(const double* c, double* zeros) {
   const double a = 3 * c[3], half_b = c[2], d = half_b * half_b - a * c[1];
-  if (!std::isfinite(d)) {
+  if (!std::isfinite(d)) {  // an overflow: coefficients are finite
     const double less[] = {0, 0x1p-600 * c[1], 0x1p-600 * c[2], 0x1p-600 * c[3]};
     return zeros_of_slope(less, zeros);
   }
@@ -81,6 +81,7 @@ double* load_entry(WheelLoad& load, int input) {
 }
 
 // A brake cannot drive: where its polynomial falls below zero, the capacity counts as zero.
+// Out of line: most scenes do not need it, and their loop of evaluations is smaller.
 [[gnu::noinline]] void Inputs::set_load_at(double t, WheelLoad& load) const {
   const double tau = t - origin;
   for (int i = 0; i < guide_input; ++i) *load_entry(load, i) = value_at(c[i], tau);

@@ -73,7 +73,7 @@ void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelSc
   if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
     ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   wheel_jump(&ramp, hold, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), &motion);
-  set_out(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+  start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScen
   WheelMotion motion = motion_of(setup, scene, y);
   motion.psi_dot = demand.value(variable::psi_dot_guide);
   motion.theta_dot = demand.value(variable::theta_dot_guide);
-  set_out(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+  start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
 }
 
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
@@ -106,6 +106,10 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& now) {
   now.scene.friction = friction_at(setup, now.scene_at(t), now.inputs.braked, y);
+}
+
+WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y) {
+  return friction_at(setup, scene, true, y);
 }
 
 void release(const Setup& setup, double t, const double* y, InForce& now) {

@@ -23,6 +23,9 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 // s N + M_brake, else rolling against that moment. A regularized law is decided by the place of omega_z in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force);
 
+// (scene, y) => the law with a brake in use, whatever its capacity is
+WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y);
+
 // (t, y) => law of friction of a wheel that friction and brake can no longer hold
 void release(const Setup& setup, double t, const double* y, InForce& in_force);
 
@@ -34,8 +37,8 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 // follows at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
 double first_direction(const WheelScene& scene, const double* y);
 
-// (t) => m/s. A slide ends at the least slip, below which its direction turns ever faster, and begins with twice as
-// much: small parts of the tolerance, and large enough for the digits of an instant.
+// (t) => m/s, the slip at which a slide ends; it begins with twice as much. Below it the direction of the slip turns
+// ever faster. It is a small part of the tolerance, and large enough for the digits of an instant.
 double least_slip(const Setup& setup, double t);
 
 // Whether the road limits the force of rolling: mu_max = 0 is no limit, and of a wheel that can slide no friction.

@@ -8,24 +8,9 @@
 #include "law.hpp"
 
 namespace wheel {
-namespace {
-
-// (t: s, clock of the run) => caller's time for messages: it is not found more exactly than to a nanosecond
 double shown_time(const Wheel& wheel, double t) {
   const double time = wheel.demand.start_time + t;
   return std::fabs(time) < 1e6 ? std::nearbyint(time * 1e9) / 1e9 : time;
-}
-
-}  // namespace
-
-Consequence pass_event(Wheel& wheel, Event event) {
-  Run& run = wheel.run;
-  const EventRow& row = event_row(event);
-  const InForce before = run.in_force;
-  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
-  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) log_observation(wheel, event, run.t);
-  log_changes(wheel, before, event);
-  return consequence;
 }
 
 void log_observation(Wheel& wheel, Event event, double t) {
@@ -33,28 +18,6 @@ void log_observation(Wheel& wheel, Event event, double t) {
   if (!observed)
     wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), event_row(event).observation);
   observed = true;
-}
-
-void log_changes(Wheel& wheel, const InForce& before, Event by) {
-  Run& run = wheel.run;
-  const double t = shown_time(wheel, run.t);
-  const WheelFriction &old = before.law(), &law = run.in_force.law();
-  const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
-  if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
-    ++run.transitions;
-    if (law.kind == WHEEL_HELD)
-      wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", t);
-    else
-      wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", t,
-                         old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
-  }
-  const bool slid = before.slides(), slides = run.in_force.slides();
-  if (slides == slid && !(slides && by == Event::slip_ends)) return;
-  ++run.transitions;
-  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", t,
-                     !slides ? "stops sliding"
-                     : slid  ? "slides in another direction"
-                             : "starts to slide");
 }
 
 void look_at_grip(Wheel& wheel, double t) {
@@ -75,10 +38,10 @@ void look_at_grip(Wheel& wheel, double t) {
                        shown_time(wheel, t), Digits{mu, 3});
 }
 
-void warn_of_jam(const Wheel& wheel, const Reading& reading) {
-  const InForce& now = reading.in_force;
+void warn_of_jam(const Wheel& wheel, const Instant& instant) {
+  const InForce& now = instant.in_force;
   if (wheel.run.pending != Pending::set || !now.slides()) return;
-  if (margin_of(event_row(Event::jams), wheel.setup, now, reading.t, reading.y) < 0)
+  if (margin_of(event_row(Event::jams), wheel.setup, now, instant.t, instant.y) < 0)
     wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
                        ending_of(now, Event::jams).text);
 }

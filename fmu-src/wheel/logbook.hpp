@@ -1,24 +1,21 @@
-// Counts and messages of a run: events that are observed, changes of the friction and of the contact, its end.
+// Messages of a run: events that are observed, warnings, and its end.
 #pragma once
 
 #include "wheel.hpp"
 
 namespace wheel {
 
-// The run stands at an event that does not end it: what follows is in force, counted and logged.
-solver::Consequence pass_event(Wheel& wheel, Event event);
+// (t: s, clock of the run) => caller's time for messages: an event is not found more exactly than to a nanosecond
+double shown_time(const Wheel& wheel, double t);
 // An event that is observed has occurred at t, s, clock of the run: the first of a run is logged.
 void log_observation(Wheel& wheel, Event event, double t);
-// Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
-// spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
-void log_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
 // Warns once per run where a loaded wheel, on a road without a limit, needs a friction coefficient above 1: at t, or as
 // far as the solution is known, s, clock of the run. It looks a few times in the wheel's time scale, so that it costs
 // nothing noticeable.
 void look_at_grip(Wheel& wheel, double t);
-// Where a road that was set makes the wheel jam: the reading has no force that satisfies the equations, and the next
+// Where a road that was set makes the wheel jam at this instant: no force satisfies the equations there, and the next
 // step ends the run.
-void warn_of_jam(const Wheel& wheel, const Reading& reading);
+void warn_of_jam(const Wheel& wheel, const Instant& instant);
 
 // Of very many endings, as in a search that goes back and tries again, the first ones alone are logged.
 void log_ending(Wheel& wheel, Event event);

@@ -12,6 +12,7 @@
 #include "law.hpp"
 #include "logbook.hpp"
 #include "posed_problem.hpp"
+#include "transitions.hpp"
 
 namespace wheel {
 namespace {
@@ -43,7 +44,7 @@ struct Result {
   const char* failure = nullptr;  // its reason; null: see the solver
   bool is_done() const { return progress == Progress::done; }
 };
-Result ended_by(Event event) { return {Progress::ended, event}; }
+Result run_ends(Event event) { return {Progress::ended, event}; }
 Result failed(const char* reason = nullptr) { return {Progress::failed, Event::none, reason}; }
 
 // From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
@@ -71,7 +72,7 @@ Result apply_demand(Wheel& w) {
   const InForce before = run.in_force;
   if (run.phase == Phase::unfolded) find_below(w.setup, run.t, run.y, run.in_force);
   enforce(w.setup, w.demand, run.t, run.y, run.in_force);
-  log_changes(w, before);
+  note_changes(w, before);
   if (run.phase == Phase::at_start) return {};
   const double interval = run.t - run.last_change;
   run.last_change = run.t;
@@ -106,8 +107,13 @@ bool enter_orbit(Wheel& w) {
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
   Record ahead = static_cast<const Record&>(w);  // events on the orbit are in force for it alone, not yet for the run
   const Shape shape = shape_of(w);
-  const orbit::FreeMotion motion = {problem_of(ahead),     w.demand.tolerance, follow_on_orbit,
-                                    w.setup.initial_state, largest_angle,      shape};
+  const orbit::FreeMotion motion = {problem_of(ahead),
+                                    w.demand.tolerance,
+                                    w.setup.time_scale,
+                                    follow_on_orbit,
+                                    w.setup.initial_state,
+                                    largest_angle,
+                                    shape};
   const bool entered = w.orbit.enter(motion, w.solver);
   if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
@@ -160,7 +166,7 @@ bool is_about_to_jam(const Wheel& w) {
 //   most_work is done: failed.
 Result step_to(Wheel& w, double t) {
   solver::Solver& solver = w.solver;
-  const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
+  const long long work_per_step = w.setup.is_multibody() ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work)
       return failed(
@@ -171,7 +177,7 @@ Result step_to(Wheel& w, double t) {
     if (outcome == Outcome::failed) {
       if (!is_about_to_jam(w)) return failed();
       move_to(w, solver.known_until());
-      return ended_by(Event::jams);
+      return run_ends(Event::jams);
     }
     if (w.run.in_force.inputs.loaded) look_at_grip(w, t);
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
@@ -181,7 +187,7 @@ Result step_to(Wheel& w, double t) {
     move_to(w, solver.known_until());
     update_state(w);
     const auto event = static_cast<Event>(solver.event());
-    if (ends_run(event_row(event), w.setup)) return ended_by(event);
+    if (ends_run(event_row(event), w.setup)) return run_ends(event);
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
     else if (const Result result = start_solver(w); !result.is_done())
@@ -197,7 +203,7 @@ Result proceed(Wheel& w, double t) {
   const std::optional<int> ending = w.orbit.course().ending;
   if (!ending) return failed("psi or phi would turn so far that the angle has too few digits");
   move_to(w, w.orbit.until());
-  return ended_by(static_cast<Event>(*ending));
+  return run_ends(static_cast<Event>(*ending));
 }
 
 // Stage 4: the run stands at t, up to which the solution is known.

@@ -36,12 +36,13 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
 }
 
 // (theta, heading_rate: |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2
-// / sin(theta) magnifies that of theta, whose sign changes from step to step: over many, a tenth remains. In (24)
-// accelerations of the size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole
-// on the direction of a slip, which follows them at once.
+// / sin(theta) magnifies the rounding of theta. In (24) accelerations of the size of r_0 psi_dot^2 cancel: their
+// rounding acts on a rate for less than 1 / psi_dot in a step, but at once on the direction of a slip.
 double rounding_of_rates(double theta, double heading_rate, bool slides) {
+  CONSTANT(double, remains, 0.1, "1",
+           "of the rounding of theta, whose sign changes from step to step, over many steps");
   const double cancels = slides ? heading_rate * heading_rate : heading_rate;
-  return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
+  return std::numeric_limits<double>::epsilon() * std::fmax(remains * theta / angle_from_flat(theta), cancels);
 }
 
 // (share, y) => weights. The states' rounding is a floor: no step has to be more exact than the numbers can express.

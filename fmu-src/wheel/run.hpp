@@ -56,7 +56,8 @@ inline Road road_asked(const Demand& demand) {
   return {v[variable::s], v[variable::mu_max], v[variable::mu_slide], v[variable::slope], v[variable::slope_direction]};
 }
 
-// What acts on the wheel, and the scene that follows from it for the equations. Plain numbers, each with one writer.
+// What acts on the wheel, and the scene that follows from it for the equations. Plain numbers; while a run goes on,
+// each has one writer.
 struct InForce {
   // By take_over: the road as it was asked for, and the inputs.
   Road road = {};
@@ -89,7 +90,7 @@ struct InForce {
 // How the demand differs from what is in force. A reading shows at once what was set, and the next step begins with it.
 enum class Pending : unsigned char {
   nothing,
-  held_inputs,  // by the end of a step alone: the inputs varied in it, and the demand holds them where they arrived
+  held_inputs,  // the inputs varied in the step that has ended, and the demand holds them where they arrived
   set,          // by the caller
 };
 
@@ -100,8 +101,9 @@ struct Run {
   bool can_slide = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
   InForce in_force;
   double t = 0;  // s, clock of the run: the instant reached
-  // The state at y_time, s, clock of the run. It lags behind t while steps go on that nobody reads: update_state brings
-  // it to t. Each step begins with that, so whatever has to do with an event or a start finds it at t.
+  // The state at y_time, s, clock of the run. It lags behind t while steps go on along a motion that is known already:
+  // update_state brings it to t. A step that asks more of the solution begins with that, so whatever has to do with a
+  // start or an event finds it at t.
   double y_time = 0;
   double y[max_states] = {};
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed

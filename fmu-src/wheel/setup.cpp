@@ -120,7 +120,8 @@ bool check_values(const Demand& demand, bool can_slide, Moment moment, const Rep
 }
 
 // omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
-void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y) {
+void start_state(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion,
+                 double* y) {
   const double axial = motion.psi_dot * std::cos(motion.theta), rounding = 4 * std::numeric_limits<double>::epsilon();
   formulation.start(&wheel, &motion, y);
   if (std::fabs(motion.phi_dot + axial) <= rounding * (std::fabs(motion.phi_dot) + std::fabs(motion.psi_dot)))
@@ -155,7 +156,7 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   WheelKinematics start;
   if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.scene.contact = WHEEL_SLIDES;
   const WheelFormulation& formulation = formulation_of(setup, setup.scene.contact);
-  set_out(formulation, setup.scene.wheel, motion, setup.initial_state);
+  start_state(formulation, setup.scene.wheel, motion, setup.initial_state);
   formulation.kinematics(&setup.scene.wheel, setup.initial_state, &start);
   set_scales(setup, start);
   set_error_scales(setup);

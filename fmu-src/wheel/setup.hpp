@@ -32,7 +32,7 @@ struct Demand {
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
 
-  // A derivative holds for one step: from its end, t, on clock of the run, s, every input stays where it arrived.
+  // (t: s, clock of the run) The step ends at t. A derivative holds for one step: every input stays where it arrived.
   void hold(const Inputs& arrived, double t);
 
   // Of a variable below stored_count, or of an input's polynomial.
@@ -86,7 +86,8 @@ struct Setup {
 Setup setup_of(const Demand& demand, bool can_slide);
 
 // (motion) => y
-void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y);
+void start_state(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion,
+                 double* y);
 
 // The equations of the contact's mode.
 inline const WheelFormulation& formulation_of(const Setup& setup, WheelContactMode contact) {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "constant.hpp"
 #include "exchange.hpp"
@@ -30,7 +32,7 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}, {-2.5, 4.5, -3.5, 1}}};
 
 // The derivatives of the variables that are asked for by one quantity x: `ask` for each, `take` or `refine` once, and
-// read them by `of`. `set_to` leads the reading to a value of x, and returns whether there is such a wheel.
+// read them by `of`. `at`: (x) => the instant with this value of x, or none where there is no such wheel.
 class Quotients {
  public:
   Quotients() { error_.fill(std::numeric_limits<double>::quiet_NaN()); }
@@ -40,10 +42,10 @@ class Quotients {
     asks_what_acts_ |= row_of(variable).by_force != nullptr;
   }
 
-  // With steps of h. tau_rate: the part of the rate of tau that the reading leaves out.
-  template <class SetTo>
-  void take(double x, double h, const Reading& reading, const SetTo& set_to, double tau_rate = 0) {
-    step(stencils[0], x, h, reading, set_to);
+  // With steps of h. tau_rate: the part of the rate of tau that the instants leave out.
+  template <class At>
+  void take(double x, double h, const At& at, double tau_rate = 0) {
+    step(stencils[0], x, h, at);
     complete(tau_rate);
   }
 
@@ -51,15 +53,15 @@ class Quotients {
   //   all derivatives are exact;
   //   the step is as small as rounding;
   //   none of the first steps is possible: false.
-  template <class SetTo>
-  bool refine(double x, double scale, const Reading& reading, const SetTo& set_to) {
+  template <class At>
+  bool refine(double x, double scale, const At& at) {
     constexpr double finest = std::numeric_limits<double>::epsilon();
     CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
     bool done = false;
     double part = first_part;
     while (part > (done ? finest : finest_first) && !settle(scale)) {
       done |= std::any_of(std::begin(stencils), std::end(stencils),
-                          [&](const Stencil& stencil) { return step(stencil, x, part * scale, reading, set_to); });
+                          [&](const Stencil& stencil) { return step(stencil, x, part * scale, at); });
       part *= 0.1;
     }
     complete(0);
@@ -74,8 +76,8 @@ class Quotients {
   // Of the computed variables, and behind them, where one needs it, of what acts.
   using Numbers = std::array<double, count>;
 
-  // By value: what a reading has computed belongs to its place.
-  Numbers sample(Reading reading) const {
+  Numbers sample(const Instant& instant) const {
+    Reading reading(instant);
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)
       if (asked_[k]) numbers[k] = row_of(stored_count + k).read(reading);
@@ -92,17 +94,19 @@ class Quotients {
 
   // Of several steps, each derivative is that with the least error. Differences from the value at x itself, so that
   // what does not depend on x has the derivative zero.
-  template <class SetTo>
-  bool step(const Stencil& stencil, double x, double h, const Reading& reading, const SetTo& set_to) {
-    if (!set_to(x)) return false;
-    centre_ = sample(reading);
+  template <class At>
+  bool step(const Stencil& stencil, double x, double h, const At& at) {
+    const std::optional<Instant> centre = at(x);
+    if (!centre) return false;
+    centre_ = sample(*centre);
     Numbers quotient = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
-      if (!set_to(x + stencil.places[k] * h)) return false;
-      const Numbers at = sample(reading);
+      const std::optional<Instant> beside = at(x + stencil.places[k] * h);
+      if (!beside) return false;
+      const Numbers numbers = sample(*beside);
       for (std::size_t i = 0; i < count; ++i) {
-        quotient[i] += stencil.weights[k] * (at[i] - centre_[i]) / h;
-        bend[i] += stencil.bend[k] * (at[i] - centre_[i]) / h;
+        quotient[i] += stencil.weights[k] * (numbers[i] - centre_[i]) / h;
+        bend[i] += stencil.bend[k] * (numbers[i] - centre_[i]) / h;
       }
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -150,32 +154,27 @@ bool take_by_parameter(const Wheel& w, unsigned parameter, Quotients& quotients)
                      parameter == variable::slope_direction;  // the same after a whole turn
   const double set = w.demand.value(parameter), x = turns ? wheel_less_turns(set) : set, size = std::fabs(x);
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
-  Record near = static_cast<const Record&>(w);
-  read_state(w, near.run.y);
-  near.run.pending = Pending::set;
-  Reading reading(near, near.run.y);
-  const auto set_to = [&](double shifted_x) {
-    near.demand.value(parameter) = shifted_x;
-    const bool exists = has_begun(near.run.phase) || prepare(near, Reporter());
-    if (exists) reading = Reading(near, near.run.y);
-    return exists;
+  Record moved = static_cast<const Record&>(w);
+  read_state(w, moved.run.y);
+  moved.run.pending = Pending::set;
+  const auto at = [&](double moved_x) -> std::optional<Instant> {
+    moved.demand.value(parameter) = moved_x;
+    const bool exists = has_begun(moved.run.phase) || prepare(moved, Reporter());
+    return exists ? std::optional<Instant>(std::in_place, moved, moved.run.y) : std::nullopt;
   };
-  return quotients.refine(x, scale, reading, set_to);
+  return quotients.refine(x, scale, at);
 }
 
 // The ground as it is at this instant, by the sign of N.
-void keep_ground(Reading& reading) {
-  const double N = rates_of(*reading.setup, reading.scene, reading.y).N;
-  reading.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
+void keep_ground(Instant& instant) {
+  const double N = rates_of(*instant.setup, instant.scene, instant.y).N;
+  instant.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
 // A brake that is not in use has the law that it would have in use; in model exchange that law waits for an event.
-void put_brake_in_use(Reading& reading) {
-  if (reading.setup->model_exchange || reading.scene.friction.kind != WHEEL_FRICTIONLESS) return;
-  InForce used = reading.in_force;
-  used.inputs.braked = true;
-  decide_law(*reading.setup, reading.t, reading.y, used);
-  reading.scene.friction = used.law();
+void put_brake_in_use(Instant& instant) {
+  if (instant.setup->model_exchange || instant.scene.friction.kind != WHEEL_FRICTIONLESS) return;
+  instant.scene.friction = braked_law(*instant.setup, instant.in_force.scene_at(instant.t), instant.y);
 }
 
 // (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
@@ -193,27 +192,30 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
 // decide the direction of the slip.
 void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   const Setup& setup = w.setup;
-  Reading reading = read_now(w);
-  WheelScene& scene = reading.scene;
-  if (known == variable::M_brake) put_brake_in_use(reading);
-  keep_ground(reading);
+  Instant here = instant_of(w);
+  if (known == variable::M_brake) put_brake_in_use(here);
+  keep_ground(here);
   if (setup.model_exchange)  // a small step must not vanish in the rounding of a large angle
-    for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) reading.x[angle] = wheel_less_turns(reading.x[angle]);
+    for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) here.x[angle] = wheel_less_turns(here.x[angle]);
   const int in_x = setup.model_exchange ? place_in_x(known) : -1;
-  double& place = in_x >= 0 ? reading.x[in_x] : *load_entry(scene.load, static_cast<int>(known - first_input));
-  const double size = size_of(setup, scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
+  const auto place_in = [&](Instant& instant) -> double& {
+    return in_x >= 0 ? instant.x[in_x] : *load_entry(instant.scene.load, static_cast<int>(known - first_input));
+  };
+  const double x = place_in(here);
+  const double size = size_of(setup, here.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, x);
   const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.scene.contact : setup.scene.contact;
-  const bool begins = scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
-  const auto set_to = [&](double x) {
-    place = x;
-    if (setup.model_exchange) wheel_reduced_state(reading.x, reading.y);
-    if (begins) reading.y[WHEEL_CHI] = first_direction(scene, reading.y);
-    return true;
+  const bool begins = here.scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
+  const auto at = [&](double moved_x) {
+    Instant moved = here;
+    place_in(moved) = moved_x;
+    if (setup.model_exchange) wheel_reduced_state(moved.x, moved.y);
+    if (begins) moved.y[WHEEL_CHI] = first_direction(moved.scene, moved.y);
+    return moved;
   };
   if (begins)
-    quotients.refine(place, size, reading, set_to);
+    quotients.refine(x, size, at);
   else
-    quotients.take(place, first_part * size, reading, set_to);
+    quotients.take(x, first_part * size, at);
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -229,7 +231,7 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 // large, and acts as a moment about the axle.
 void take_along_motion(const Wheel& w, Quotients& quotients) {
   const Setup& setup = w.setup;
-  Reading start = read_now(w);
+  Instant start = instant_of(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
     start.y[angle] = wheel_less_turns(start.y[angle]);
   keep_ground(start);
@@ -246,22 +248,21 @@ void take_along_motion(const Wheel& w, Quotients& quotients) {
     rate.M[2] += tau_rate;
     law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};
   }
-  Reading reading = start;
-  const auto set_to = [&](double t) {
-    for (int i = 0; i < formulation.states; ++i) reading.y[i] = start.y[i] + t * rates.y_dot[i];
-    reading.scene.load = start.scene.load;
-    for (int i = 0; i < inputs_count; ++i) *load_entry(reading.scene.load, i) += t * *load_entry(rate, i);
-    return true;
+  const auto at = [&](double t) {
+    Instant moved = start;
+    for (int i = 0; i < formulation.states; ++i) moved.y[i] += t * rates.y_dot[i];
+    for (int i = 0; i < inputs_count; ++i) *load_entry(moved.scene.load, i) += t * *load_entry(rate, i);
+    return moved;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  quotients.take(0, pace > 0 ? first_part / pace : 1, reading, set_to, tau_rate);
+  quotients.take(0, pace > 0 ? first_part / pace : 1, at, tau_rate);
 }
 
 }  // namespace
 
 void read_rates(const Wheel& w, Listed outputs, std::size_t count, double* out) {
   Quotients quotients;
-  Reading reading = read_now(w);
+  Reading reading(instant_of(w));
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k) {
     if (row_of(outputs[k]).read_rate) continue;

@@ -19,9 +19,9 @@ constexpr double strongest = 1e300;
 // (reading) => J, of the whole X_O and Y_O
 double energy(Reading& reading) {
   WheelKinematics whole = reading.kinematics();
-  whole.X_O = reading.setup->X_O.whole(whole.X_O);
-  whole.Y_O = reading.setup->Y_O.whole(whole.Y_O);
-  return wheel_energy(&reading.scene.wheel, &whole);
+  whole.X_O = reading.at.setup->X_O.whole(whole.X_O);
+  whole.Y_O = reading.at.setup->Y_O.whole(whole.Y_O);
+  return wheel_energy(&reading.at.scene.wheel, &whole);
 }
 
 // (vector in fixed axes, axis) => its part along e1 (0) or across it (1)
@@ -39,15 +39,16 @@ double velocity(Reading& reading, int axis) {
 // (axis) => N m, the wheel carrier's on the wheel: about e1 (0) or e2 (1)
 double guide_moment(Reading& reading, int axis) {
   double moment[2] = {};
-  if (reading.scene.guided) wheel_guide_moment(&reading.scene, &reading.kinematics(), &reading.dynamics(), moment);
+  if (reading.at.scene.guided)
+    wheel_guide_moment(&reading.at.scene, &reading.kinematics(), &reading.dynamics(), moment);
   return moment[axis];
 }
 
 // (axis) => m/s, of the wheel's material point at the contact: along e1 (0) or across it (1)
 double slip(const Reading& reading, int axis) {
-  if (reading.scene.contact == WHEEL_GRIPS) return 0;
-  const double chi = reading.y[WHEEL_CHI];
-  return reading.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
+  if (reading.at.scene.contact == WHEEL_GRIPS) return 0;
+  const double chi = reading.at.y[WHEEL_CHI];
+  return reading.at.y[WHEEL_SLIP] * (axis == 0 ? std::cos(chi) : std::sin(chi));
 }
 
 double brake_moment(Reading& reading) {
@@ -56,7 +57,7 @@ double brake_moment(Reading& reading) {
 }
 
 int friction_mode(Reading& reading) {
-  const WheelFriction& friction = reading.scene.friction;
+  const WheelFriction& friction = reading.at.scene.friction;
   if (friction.kind == WHEEL_HELD) return 0;
   const double side = friction.kind == WHEEL_ROLLING ? friction.sigma : reading.kinematics().omega_z;
   return (side > 0) - (side < 0);
@@ -72,12 +73,12 @@ struct Access {
 #define AT(expression) [](Reading& reading) -> double { return expression; }
 
 constexpr Access readers[] = {
-    {variable::X_O, AT(reading.setup->X_O.whole(reading.kinematics().X_O)), AT(reading.kinematics().X_O_dot)},
-    {variable::Y_O, AT(reading.setup->Y_O.whole(reading.kinematics().Y_O)), AT(reading.kinematics().Y_O_dot)},
+    {variable::X_O, AT(reading.at.setup->X_O.whole(reading.kinematics().X_O)), AT(reading.kinematics().X_O_dot)},
+    {variable::Y_O, AT(reading.at.setup->Y_O.whole(reading.kinematics().Y_O)), AT(reading.kinematics().Y_O_dot)},
     {variable::Z_O, AT(reading.kinematics().Z_O), AT(reading.kinematics().Z_O_dot)},
-    {variable::psi, AT(reading.setup->psi.whole(reading.kinematics().psi)), AT(reading.kinematics().psi_dot)},
+    {variable::psi, AT(reading.at.setup->psi.whole(reading.kinematics().psi)), AT(reading.kinematics().psi_dot)},
     {variable::theta, AT(reading.kinematics().theta), AT(reading.kinematics().theta_dot)},
-    {variable::phi, AT(reading.setup->phi.whole(reading.kinematics().phi)), AT(reading.kinematics().phi_dot)},
+    {variable::phi, AT(reading.at.setup->phi.whole(reading.kinematics().phi)), AT(reading.kinematics().phi_dot)},
     {variable::X_O_dot, AT(reading.kinematics().X_O_dot), AT(reading.dynamics().X_O_ddot)},
     {variable::Y_O_dot, AT(reading.kinematics().Y_O_dot), AT(reading.dynamics().Y_O_ddot)},
     {variable::Z_O_dot, AT(reading.kinematics().Z_O_dot), AT(reading.dynamics().Z_O_ddot)},
@@ -88,8 +89,8 @@ constexpr Access readers[] = {
     {variable::lambda_1, AT(reading.dynamics().lambda[0])},
     {variable::lambda_2, AT(reading.dynamics().lambda[1])},
     {variable::lambda_3, AT(reading.dynamics().lambda[2])},
-    {variable::X_C, AT(reading.setup->X_O.whole(reading.contact().X_C)), AT(reading.contact().X_C_dot)},
-    {variable::Y_C, AT(reading.setup->Y_O.whole(reading.contact().Y_C)), AT(reading.contact().Y_C_dot)},
+    {variable::X_C, AT(reading.at.setup->X_O.whole(reading.contact().X_C)), AT(reading.contact().X_C_dot)},
+    {variable::Y_C, AT(reading.at.setup->Y_O.whole(reading.contact().Y_C)), AT(reading.contact().Y_C_dot)},
     {variable::lambda_x, AT(horizontal(reading, reading.dynamics().lambda, 0))},
     {variable::lambda_y, AT(horizontal(reading, reading.dynamics().lambda, 1))},
     {variable::tau, AT(reading.dynamics().tau)},
@@ -108,14 +109,14 @@ constexpr Access readers[] = {
     {variable::E, AT(energy(reading))},
     {variable::mu_required, AT(wheel_required_friction(reading.dynamics().lambda)), nullptr,
      [](const Acting& acting, const Acting& rate) { return wheel_required_friction_rate(acting.lambda, rate.lambda); }},
-    {variable::contact_mode, AT(reading.scene.contact)},
+    {variable::contact_mode, AT(reading.at.scene.contact)},
     {variable::friction_mode, AT(friction_mode(reading))},
-    {variable::n_steps, AT(double(reading.counters.steps))},
-    {variable::n_rhs, AT(double(reading.counters.rhs))},
-    {variable::n_jac, AT(double(reading.counters.jacobians))},
-    {variable::n_roots, AT(double(reading.counters.roots))},
-    {variable::n_events, AT(double(reading.transitions))},
-    {variable::n_restarts, AT(double(reading.counters.restarts))},
+    {variable::n_steps, AT(double(reading.at.counters.steps))},
+    {variable::n_rhs, AT(double(reading.at.counters.rhs))},
+    {variable::n_jac, AT(double(reading.at.counters.jacobians))},
+    {variable::n_roots, AT(double(reading.at.counters.roots))},
+    {variable::n_events, AT(double(reading.at.transitions))},
+    {variable::n_restarts, AT(double(reading.at.counters.restarts))},
 };
 
 #undef AT
@@ -170,7 +171,7 @@ const Row& row_of(unsigned variable) { return rows[variable]; }
 
 Acting acting_of(Reading& reading) {
   const WheelDynamics& d = reading.dynamics();
-  const WheelAxleMoment axle = {d.tau, d.lambda[2], reading.scene.wheel.s, reading.scene.load.brake};
+  const WheelAxleMoment axle = {d.tau, d.lambda[2], reading.at.scene.wheel.s, reading.at.scene.load.brake};
   return {reading.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
 }
 

@@ -9,7 +9,7 @@
 
 namespace wheel {
 
-struct Reading;
+class Reading;
 
 // How the wheel moves, and what acts on it at the ground, fixed axes, N, and about the axle; or the rates of these by
 // some quantity.

@@ -7,6 +7,7 @@
 #include "exchange.hpp"
 #include "law.hpp"
 #include "logbook.hpp"
+#include "transitions.hpp"
 
 namespace wheel {
 namespace {
@@ -53,7 +54,7 @@ void read_state(const Wheel& w, double* y) {
   run.phase == Phase::unfolded ? w.orbit.read(run.t, y) : w.solver.read(run.t, y);
 }
 
-Reading::Reading(const Record& r, const double* y_reached)
+Instant::Instant(const Record& r, const double* y_reached)
     : setup(&r.setup), t(r.run.t), in_force(r.run.in_force), counters(r.run.counted), transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
@@ -62,12 +63,12 @@ Reading::Reading(const Record& r, const double* y_reached)
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
-Reading read_now(const Wheel& w) {
+Instant instant_of(const Wheel& w) {
   double y[max_states];
   read_state(w, y);
-  Reading reading(w, y);
-  reading.counters = counters_of(w.run, w.solver);
-  return reading;
+  Instant instant(w, y);
+  instant.counters = counters_of(w.run, w.solver);
+  return instant;
 }
 
 void reset(Wheel& w) {
@@ -111,7 +112,7 @@ bool prepare(Record& r, const Reporter& reporter) {
   if (r.setup.steered()) start_guide_rates(r.setup, r.demand, r.setup.scene, run.y);
   enforce(r.setup, r.demand, 0, run.y, run.in_force);
   if (r.setup.model_exchange) wheel_euler_states(run.y, r.demand.parameters[variable::psi_dot_start], run.x);
-  Reading start(r, run.y);
+  Reading start(Instant(r, run.y));
   if (check_start(r, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
 }
@@ -126,7 +127,7 @@ bool end_initialization(Wheel& w) {
   const bool sound = prepare(w, w.reporter) && (!exchange || starts_inside(w));
   if (sound) {
     warn_of_paper_start(w);
-    log_changes(w, InForce(w.setup));
+    note_changes(w, InForce(w.setup));
   }
   w.run.phase = !sound ? Phase::without_start : exchange ? Phase::event_mode : Phase::at_start;
   return sound;

@@ -34,12 +34,11 @@ struct Record {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
-// All that can be read at one instant. Positions and velocities, and accelerations and reactions, are computed when
-// they are first asked for and kept; nothing is computed for an output that nobody reads. Fixed axes unless said.
-struct Reading {
-  // (y: the state at the instant reached) => the reading there, where what was set since the last step is in force at
-  // once. The record stays where it is as long as the reading is in use.
-  Reading(const Record& record, const double* y);
+// A wheel at one instant. Fixed axes.
+struct Instant {
+  // (y: the state at the instant reached) => that instant, where what was set since the last step is in force at once.
+  // The record stays where it is as long as the instant is in use.
+  Instant(const Record& record, const double* y);
 
   const Setup* setup;
   double t;          // s, clock of the run
@@ -49,21 +48,30 @@ struct Reading {
   double x[WHEEL_EULER_STATES];  // model exchange: the states, from which y follows
   solver::Counters counters;
   long long transitions;
+};
+
+// All that can be read at one instant, which stays the same. Positions and velocities, and accelerations and reactions,
+// are computed when they are first asked for and kept; nothing is computed for an output that nobody reads.
+class Reading {
+ public:
+  explicit Reading(const Instant& of) : at(of) {}
+
+  const Instant at;
 
   // psi, phi, X_O and Y_O as the state counts them.
   const WheelKinematics& kinematics() {
     if (kinematics_) return *kinematics_;
     WheelKinematics& k = kinematics_.emplace();
-    setup->model_exchange ? wheel_euler_kinematics(&scene.wheel, x, &k)
-                          : formulation_of(*setup, scene.contact).kinematics(&scene.wheel, y, &k);
+    at.setup->model_exchange ? wheel_euler_kinematics(&at.scene.wheel, at.x, &k)
+                             : formulation_of(*at.setup, at.scene.contact).kinematics(&at.scene.wheel, at.y, &k);
     return k;
   }
   const WheelDynamics& dynamics() {
-    if (!dynamics_) dynamics_ = dynamics_of(*setup, scene, y);
+    if (!dynamics_) dynamics_ = dynamics_of(*at.setup, at.scene, at.y);
     return *dynamics_;
   }
   // X_C and Y_C as the state counts X_O and Y_O.
-  WheelContact contact() { return wheel_contact(&scene.wheel, &kinematics()); }
+  WheelContact contact() { return wheel_contact(&at.scene.wheel, &kinematics()); }
 
  private:
   std::optional<WheelKinematics> kinematics_ = {};
@@ -82,7 +90,7 @@ struct Wheel : Record {
 
 // Whether the variable is a rate of a wheel carrier.
 inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
-// Whether it is one of a wheel that runs without a carrier that turns.
+// Whether it is such a rate, and no carrier turns the running wheel.
 inline bool is_idle(const Record& record, unsigned variable) {
   return is_guide_rate(variable) && is_running(record.run.phase) && !record.setup.steered();
 }
@@ -94,7 +102,7 @@ inline void update_state(Wheel& wheel) {
   wheel.run.y_time = wheel.run.t;
 }
 
-Reading read_now(const Wheel& wheel);
+Instant instant_of(const Wheel& wheel);
 
 // As new: start values, no state. The orbit is kept, for the next run of the same shape.
 void reset(Wheel& wheel);

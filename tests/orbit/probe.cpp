@@ -80,8 +80,9 @@ PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
   const double build = ++probe->builds;  // each is another motion
-  const orbit::FreeMotion motion = {problem,       setup.tolerance, wheel::follow_on_orbit, setup.initial_state,
-                                    solver::never, {&build, 1}};
+  const orbit::FreeMotion motion = {
+      problem,       setup.tolerance, setup.time_scale, wheel::follow_on_orbit, setup.initial_state,
+      solver::never, {&build, 1}};
   if (!probe->orbit.enter(motion, probe->solver)) return 0;
   const orbit::Course& course = probe->orbit.course();
   return course.ending ? 3 : std::holds_alternative<orbit::Circle>(course.path) ? 2 : 1;

@@ -1,0 +1,42 @@
+// How a run passes an event, and what has changed since.
+#include "transitions.hpp"
+
+#include "events.hpp"
+#include "law.hpp"
+#include "logbook.hpp"
+
+namespace wheel {
+
+Consequence pass_event(Wheel& wheel, Event event) {
+  Run& run = wheel.run;
+  const EventRow& row = event_row(event);
+  const InForce before = run.in_force;
+  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
+  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) log_observation(wheel, event, run.t);
+  note_changes(wheel, before, event);
+  return consequence;
+}
+
+void note_changes(Wheel& wheel, const InForce& before, Event by) {
+  Run& run = wheel.run;
+  const double t = shown_time(wheel, run.t);
+  const WheelFriction &old = before.law(), &law = run.in_force.law();
+  const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
+  if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
+    ++run.transitions;
+    if (law.kind == WHEEL_HELD)
+      wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", t);
+    else
+      wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", t,
+                         old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
+  }
+  const bool slid = before.slides(), slides = run.in_force.slides();
+  if (slides == slid && !(slides && by == Event::slip_ends)) return;
+  ++run.transitions;
+  wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", t,
+                     !slides ? "stops sliding"
+                     : slid  ? "slides in another direction"
+                             : "starts to slide");
+}
+
+}  // namespace wheel
