@@ -1,4 +1,4 @@
-"""The free wheel unfolded from half a nutation, against stepping through and against half after half laid end to end.
+"""The free wheel unfolded from half a swing, against stepping through and against half after half laid end to end.
 
 J_x = J_y, no friction, no load; scaled errors: angles 1 rad, rates the largest of the motion, lengths 1 m.
 """
@@ -136,7 +136,7 @@ def test_where_the_ground_pulls_from_the_start_it_is_observed_there_and_where_it
 
 
 def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(library: ctypes.CDLL) -> None:
-    """Resonance: the turn of psi in half a nutation is a multiple of pi, and sin(n delta) / sin(delta) is n."""
+    """Resonance: the turn of psi in half a swing is a multiple of pi, and sin(n delta) / sin(delta) is n."""
 
     def turning(psi_dot: float) -> Orbit:
         return Orbit(library, start=Start(psi_dot=psi_dot, phi_dot=-6.0), tolerance=1e-12)

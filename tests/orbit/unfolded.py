@@ -96,7 +96,7 @@ def stepped(wheel: Wheel, start: Start, t: Array) -> Array:
 
 
 class Halves:
-    """The paper's wheel by the reference over half a nutation; the rest by laying half after half."""
+    """The paper's wheel by the reference over half a swing; the rest by laying half after half."""
 
     def __init__(self, wheel: Wheel, start: Start, mirrored: bool = True) -> None:
         self.wheel, self.start, self.mirrored = wheel, start, mirrored
