@@ -60,7 +60,7 @@ typedef enum WheelFrictionKind {
 
 typedef struct WheelFriction {
   WheelFrictionKind kind;
-  double sigma;   /* +1 or -1, for WHEEL_ROLLING */
+  double sigma;   /* for WHEEL_ROLLING: +1 or -1, which `wheel_scene` checks; the equations take any kappa */
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 

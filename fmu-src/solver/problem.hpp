@@ -8,7 +8,7 @@
 
 namespace solver {
 
-inline constexpr int max_states = 10, max_extremes = 18, max_degree = 12, max_watched = 13;
+inline constexpr int max_states = 10, max_extremes = 20, max_degree = 12, max_watched = 13;
 
 enum class Method : int { adams, bdf, runge_kutta, collocation };
 
