@@ -4,8 +4,9 @@
 //   slides  J_z omega_3_dot = rho f_x + tau,  u_x_dot = f_x / m - eta d_2 + rho omega_3_dot,  u_y_dot = f_y / m + h d_1
 // with |tau| <= s N, f = -mu_slide N u / |u| and N = m l d_1. Where N is negative, the ramp relieves the ground:
 // friction of the weight that it takes away gives back to a spin, but drives no wheel that stands. Brake and weight are
-// too weak for so steep a ramp. But a jump stands for a ramp as long as a communication step, and a held wheel that
-// they would hold over one of a millisecond stays held.
+// too weak for so steep a ramp. But a jump stands for a ramp as long as a communication step, and a wheel at rest that
+// they would hold over one of a millisecond stays at rest: held, or in the layer of a regularized law so narrow that
+// they stop any spin in it within the ramp.
 #include <Eigen/LU>
 #include <cmath>
 #include <utility>
@@ -141,8 +142,7 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
   const double lean = std::fabs(c) < 1e-15 ? 0 : c, eta = w.r * lean;  // of an upright wheel it is rounding
   const double d_1 = theta_dot - motion->theta_dot, d_2 = (psi_dot - motion->psi_dot) * sine;
   const double N = scene->ground == WHEEL_GROUND_PULLS ? 0 : w.m * w.r_0 * lean * d_1;
-  const bool slides = scene->contact == WHEEL_SLIDES, held = scene->friction.kind == WHEEL_HELD;
-  const bool regularized = scene->friction.kind == WHEEL_REGULARIZED;
+  const bool slides = scene->contact == WHEEL_SLIDES, regularized = scene->friction.kind == WHEEL_REGULARIZED;
   Ramp r = {};
   r.m = w.m;
   r.J = w.J_z + (slides ? 0 : w.m * rho * rho);
@@ -156,21 +156,23 @@ void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double the
   Vector y = {motion->slip_x, motion->slip_y, motion->phi_dot + motion->psi_dot * c};
   r.width_omega = scene->friction.omega_s;
   r.kappa = regularized ? std::tanh(y[2] / r.width_omega) : (y[2] > 0) - (y[2] < 0);
+  CONSTANT(double, few, 40, "widths", "where friction holds a speed at zero, it ends so close to it");
+  const bool stands = regularized && ramp * hold > few * r.width_omega * r.J;
+  const bool held = scene->friction.kind == WHEEL_HELD || stands;
   const double holds = std::fmax(ramp * hold + w.s * N, ramp * scene->load.brake);
   if (slides && (r.mu_N != 0 || r.s_N != 0)) {
     const double scale = y.head<2>().norm() + rho * std::fabs(y[2]) + std::fabs(r.a_x) + std::fabs(r.a_y);
     r.width_u = narrow * scale;
     if (!regularized) r.width_omega = narrow * scale / rho;
     follow(r, holds, held && std::fabs(turning(r, y)) <= holds, scale, y);
-    CONSTANT(double, few, 40, "widths", "where friction holds a speed at zero, it ends so close to it");
     if (y.head<2>().norm() < few * r.width_u) y[0] = y[1] = 0;
     if (!regularized && std::fabs(y[2]) < few * r.width_omega) y[2] = 0;
   } else if (slides) {
     y[0] += r.a_x;
     y[1] += r.a_y;
-  } else if (regularized && r.s_N > 0) {
+  } else if (const bool stays = held && std::fabs(r.free * r.J) <= holds; regularized && r.s_N > 0 && !stays) {
     follow(r, 0, false, rho * (std::fabs(y[2]) + std::fabs(r.free) + std::fabs(r.s_N) / r.J), y);
-  } else if (!held || std::fabs(r.free * r.J) > holds) {
+  } else if (!stays) {
     y[2] = spin_after(y[2], r.free, r.s_N / r.J * (regularized ? std::fabs(r.kappa) : 1));
   }
   *motion = {motion->psi,        motion->theta, motion->phi, psi_dot,           theta_dot,

@@ -60,7 +60,7 @@ typedef enum WheelFrictionKind {
 
 typedef struct WheelFriction {
   WheelFrictionKind kind;
-  double sigma;   /* +1 or -1, for WHEEL_ROLLING */
+  double sigma;   /* for WHEEL_ROLLING: +1 or -1, which `wheel_scene` checks; the equations take any kappa */
   double omega_s; /* rad/s, > 0, for WHEEL_REGULARIZED */
 } WheelFriction;
 
@@ -240,7 +240,8 @@ void wheel_guide_moment(const WheelScene* scene, const WheelKinematics* motion, 
 
 /* The motion of a guided wheel after a jump of the carrier's rates to psi_dot and theta_dot, rad/s: the limit of ever
  * steeper ramps of both. phi_dot and a slip change with them; a wheel that rolls goes on rolling. hold: of a held wheel
- * (WHEEL_HELD), the moment about the axle that could be added before it is released, N m. */
+ * (WHEEL_HELD), or of one in the layer of a regularized law, the moment about the axle that could be added before it is
+ * released, N m. */
 void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion);
 
 /* The same angle, rad, less whole turns: from -pi to pi: exact to the last digit up to 1e12 rad. */

@@ -90,7 +90,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   return guarded(c, legality::exit_initialization,
-                 [](Instance& i) { return wheel::start(i.change()) ? fmi2OK : fmi2Error; });
+                 [](Instance& i) { return wheel::end_initialization(i.change()) ? fmi2OK : fmi2Error; });
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {

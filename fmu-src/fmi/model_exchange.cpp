@@ -81,19 +81,19 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "states", wheel::states));
+  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "states", wheel::read_states));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "nominals", wheel::nominals));
+  return guarded(c, legality::get_states, read_numbers(x, n, wheel::state_count, "nominals", wheel::read_nominals));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x_dot[], size_t n) {
   return guarded(c, legality::get_states,
-                 read_numbers(x_dot, n, wheel::state_count, "derivatives", wheel::derivatives));
+                 read_numbers(x_dot, n, wheel::state_count, "derivatives", wheel::read_derivatives));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
   return guarded(c, legality::get_states,
-                 read_numbers(z, n, wheel::indicator_count(), "indicators", wheel::indicators));
+                 read_numbers(z, n, wheel::indicator_count(), "indicators", wheel::read_indicators));
 }

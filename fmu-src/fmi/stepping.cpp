@@ -62,9 +62,9 @@ auto get_status(const fmi2StatusKind& asked, long long known_kind, Value* value,
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean) {
   return guarded(c, legality::do_step, [=](Instance& i) {
     if (!check_step(i, t, h) || !check_inputs(i, h)) return fmi2Error;
-    const solver::Outcome outcome = wheel::advance(i.change(), t + h - i.wheel.demand.start_time);
-    if (outcome == solver::Outcome::failed) return fmi2Error;
-    return outcome == solver::Outcome::event ? fmi2Discard : fmi2OK;
+    const wheel::Progress progress = wheel::advance(i.change(), t + h - i.wheel.demand.start_time);
+    if (progress == wheel::Progress::failed) return fmi2Error;
+    return progress == wheel::Progress::ended ? fmi2Discard : fmi2OK;
   });
 }
 

@@ -2,9 +2,20 @@
 // form, non-spinning frame.
 //
 // `integrate`, once for each motion: `steady_course` tries the start for a circle or a straight line; if it is neither,
-// `stepped_course` steps past T1 and T2. `is_mirrored` tests a course that does not end. `Orbit::enter`, once for each
-// run: heading, roll angle and place of the start, and whether the right-hand side depends on them. Both tests rest on
-// `maps`: the rates at the image of a state are the image of its rates.
+// `stepped_course` steps past T1 and T2, and `is_mirrored` tests a course that does not end. `Orbit::enter`, once for
+// each run: whether the right-hand side depends on heading, roll angle and place of the start.
+//
+// A motion is refused where
+//   a step fails, an event bends the motion, or the track is full or without memory;
+//   theta swings by no more than errors between both turning points, and the wheel is not in steady motion;
+//   the rates have not the symmetry of time reversed;
+//   the rates depend on heading, roll angle or place.
+// Both tests rest on `maps`: the rates at the image of a state are the image of its rates. An owner may add any force
+// to the rates, and no list here has to name those that break the symmetry.
+//
+// An error, the unit of the limits below, is the change of a state that the problem's weights count as one. While a
+// motion is integrated and tested for its symmetry, the weights are those of the finer tolerance with which it is
+// integrated; where a run enters, they are its own.
 #include "orbit.hpp"
 
 #include <algorithm>
@@ -15,17 +26,19 @@
 namespace orbit {
 namespace {
 
-CONSTANT(double, finer, 0.05, "of the tolerance", "of the integrated half, whose error is added once for every half");
-CONSTANT(double, finest, 1e-14, "1", "of a tolerance: rounding allows no more");
-CONSTANT(double, loosest, 1e-8, "1", "a looser one saves little in one nutation, and its steps are less accurate");
-CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every turn of the run repeats these few steps");
-// In units of the fraction of the tolerance.
-CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may be the errors of a few steps");
+CONSTANT(double, finer, 0.05, "of the tolerance", "for the integrated half, whose error every half of the run repeats");
+CONSTANT(double, finest, 1e-14, "1", "the tightest tolerance that rounding allows");
+CONSTANT(double, loosest, 1e-8, "1",
+         "a looser tolerance saves little in one nutation, and its steps are less accurate");
+CONSTANT(double, shortening, 5.0 / 6, "of the longest step", "every half of the run repeats these few steps");
+CONSTANT(double, least_swing, 0.01, "errors", "a smaller swing of omega_1 may consist of the errors of a few steps");
 CONSTANT(double, largest_steady, 0.003, "errors", "a wheel that swings less is in steady motion");
-CONSTANT(double, largest_break, 0.1, "errors", "within the longest step, by what breaks the symmetry: rounding too");
-CONSTANT(double, alike, 1e-5, "1", "by which watched functions may differ; rounding alone leaves 1e-14");
-CONSTANT(int, samples, 8, "instants", "at which a half is tested: what vanishes at all changes its sign eight times");
-CONSTANT(double, on_the_way, 0.4, "of T2", "no start, turning point or sample: there a break of symmetry may vanish");
+CONSTANT(double, largest_break, 0.1, "errors",
+         "what rates that differ may add up to in the longest step: rounding alone does");
+CONSTANT(double, alike, 1e-5, "1", "difference of watched functions that counts as none; rounding alone leaves 1e-14");
+CONSTANT(int, samples, 8, "instants", "tests of a half; only a break that vanishes at all of them remains");
+CONSTANT(double, on_the_way, 0.4, "of the half",
+         "where a run is tested: not at a turning point, where a break may vanish");
 
 // A small lean of a wheel with omega_1 = 0, in which omega_2 and omega_3 follow theta as they do along a motion.
 struct Lean {
@@ -41,14 +54,14 @@ Lean lean_of(const solver::Problem& problem, const double* y0) {
   y[WHEEL_OMEGA_1] = 1;
   problem.derivative(problem.owner, 0, y, along);
   y[WHEEL_OMEGA_1] = 0;
-  const auto tilting = [&](double by) {
+  const auto tipped = [&](double by) {
     y[WHEEL_THETA] = y0[WHEEL_THETA] + by;
     y[WHEEL_OMEGA_2] = y0[WHEEL_OMEGA_2] + by * along[WHEEL_OMEGA_2];
     y[WHEEL_OMEGA_3] = y0[WHEEL_OMEGA_3] + by * along[WHEEL_OMEGA_3];
     problem.derivative(problem.owner, 0, y, rate);
     return rate[WHEEL_OMEGA_1];
   };
-  const double h = lean_tried * std::sin(y0[WHEEL_THETA]), ahead = tilting(h), behind = tilting(-h);
+  const double h = lean_tried * std::sin(y0[WHEEL_THETA]), ahead = tipped(h), behind = tipped(-h);
   return {along[WHEEL_OMEGA_2], along[WHEEL_OMEGA_3], (behind - ahead) / (2 * h), ahead == 0 && behind == 0};
 }
 
@@ -77,7 +90,7 @@ bool maps(const Nutation& nutation, const solver::Problem& problem, double t, co
 // side is its mirror image with time reversed.
 bool is_mirrored(const Nutation& nutation, const solver::Problem& problem) {
   const Course& course = nutation.course();
-  Entry from_zero;
+  Entry from_zero;  // read without a run
   for (int i = 0; i < samples; ++i) {
     const double since = (i + 0.5) / samples * course.half_period(), t = course.T2 + since;
     const auto mirror = [&](double* rate) {
@@ -118,7 +131,8 @@ Course steady_course(const solver::Problem& problem, const double* y0) {
   return course;
 }
 
-// (solver) => stepped to the end of a step, past the events after which the motion goes on
+// (solver) => stepped to the end of a step, past the events after which the motion goes on: their instants are the
+// course's
 solver::Outcome step(const FreeMotion& motion, solver::Solver& solver, Course& course) {
   for (;;) {
     const solver::Outcome outcome = solver.step();
@@ -199,12 +213,17 @@ Nutation integrate(const FreeMotion& given, solver::Solver& solver) {
 
 }  // namespace
 
-bool Orbit::enter(const FreeMotion& motion, bool known, solver::Solver& solver) {
+bool Orbit::enter(const FreeMotion& motion, solver::Solver& solver) {
   leave();
-  if (!known || !course().exists()) nutation_ = integrate(motion, solver);
+  const auto& shape = motion.shape;
+  if (!any_ || !std::equal(shape.begin(), shape.end(), shape_.begin())) {
+    any_ = true;
+    std::copy(shape.begin(), shape.end(), shape_.begin());
+    nutation_ = integrate(motion, solver);
+  }
   if (!course().exists()) return false;
   const Entry entry = nutation_.entry_at(motion.y0, motion.most_angle);
-  const double t = on_the_way * course().T2;
+  const double t = course().T1 + on_the_way * course().half_period();
   const auto turn = [&](double* rate) { set_place(rate, entry.start.rotation * place_of(rate)); };
   if (maps(nutation_, motion.problem, t, entry, t, turn)) entry_ = entry;
   return until() >= 0;

@@ -58,7 +58,7 @@ Nutation::Nutation(Course&& course) : course_(std::move(course)) {
   phi_growth_ = at_T2_[WHEEL_PHI] - at_T1_[WHEEL_PHI];
   delta_ = std::remainder(psi_growth_, std::numbers::pi);
   displacement_ = (place_of(at_T2_) - place_of(at_T1_)) * std::polar(1.0, -at_T1_[WHEEL_PSI]);
-  pair_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
+  pair_advance_ = 2 * (displacement_ * std::polar(1.0, -delta_)).real();
   rotation_at_T1_ = std::polar(1.0, at_T1_[WHEEL_PSI]);
   mirror_rotation_ = std::polar(1.0, 2 * at_T2_[WHEEL_PSI]);
 }
@@ -77,7 +77,7 @@ Half Nutation::half_at(double k, const Pose& start) const {
   const bool mirrored = k != 2 * n;
   const Complex chord = std::polar(1.0, n * delta_), pairs_rotation = chord * chord;
   const double quotient = delta_ == 0 ? n : chord.imag() / std::sin(delta_);
-  Complex way = pair_ * quotient * chord;
+  Complex way = pair_advance_ * quotient * chord;
   if (mirrored) way += displacement_ * pairs_rotation;
   Pose pose;
   pose.psi = start.psi + (mirrored ? 2 * at_T2_[WHEEL_PSI] + (k - 1) * psi_growth_ : k * psi_growth_);

@@ -17,7 +17,8 @@
 //       |  .           .  .            .        T2 to T3:   its mirror image about T2, turned and displaced
 //       +--0-----------T2----------------- t    from T3 on: images of images, L each
 //
-// From the question to the answer, each type written in one place and constant from then on:
+// From the question to the answer, each type written in one place and constant from then on, but for what a track and
+// an entry remember of the place read last:
 //
 //   FreeMotion   by the owner: the problem and its start
 //   Course       by stepping along it (building.cpp): the integrated motion, in its own frame
@@ -32,6 +33,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "solver.hpp"
@@ -52,18 +54,21 @@ inline void set_place(double* y, Complex place) {
 struct FreeMotion {
   solver::Problem problem;
   double tolerance;
-  // What follows from an event at t and y, for the owner to decide; where the motion bends it cannot be unfolded. The
-  // owner may answer `problem` otherwise from then on, as to which side of a limit is watched: it puts back itself,
-  // after `enter`, what it changes for that.
+  // What follows from an event at t and y, for the problem's owner to decide; where the motion bends it cannot be
+  // unfolded. From then on the owner may answer the problem otherwise, as to which side of a limit is watched.
   solver::Consequence (*on_event)(void* owner, int event, double t, double* y);
   const double* y0;
   double most_angle;  // rad, by which psi or phi may turn
+  // The numbers that the motion follows from, but for psi, phi and place of its start; at most most_shape.
+  std::span<const double> shape;
 };
+inline constexpr std::size_t most_shape = 64;
 
 // The polynomials of the steps of a motion.
 class Track {
  public:
-  // The next step, with its polynomial; false where the track is full or there is no memory for it.
+  // The next step, with its polynomial; false where the track is full, the polynomial has too high a degree for it, or
+  // there is no memory.
   bool add(const solver::Step& step);
 
   // (t, between the first instant and the last) => y
@@ -76,7 +81,7 @@ class Track {
     double start, end, c[degree + 1][states];  // as in Step
   };
 
-  std::unique_ptr<Piece, void (*)(void*)> pieces_{nullptr, std::free};
+  std::unique_ptr<Piece, void (*)(void*)> pieces_{nullptr, std::free};  // a vector without memory would throw
   int count_ = 0;
   mutable int latest_ = 0;  // the piece read last
 };
@@ -88,7 +93,8 @@ struct Circle {
   void read(double t, double* y) const;
 };
 
-// The integrated motion: psi, phi, X_O and Y_O are zero at its start. Without a path: none.
+// The integrated motion: psi, phi, X_O and Y_O are zero at its start. Without a path: none. On a circle T1 = 0, and T2
+// ends a piece of it.
 struct Course {
   Course() { first_times.fill(solver::never); }
 
@@ -102,7 +108,7 @@ struct Course {
   solver::Counters counters = {};  // of the integration; zero for a wheel in steady motion
 
   bool exists() const { return !std::holds_alternative<std::monostate>(path); }
-  double half_period() const { return T2 - T1; }  // s, of theta's nutation
+  double half_period() const { return T2 - T1; }  // s, of theta's nutation, or the length of the piece
   // (0 <= t <= T2, of a steady motion any t) => y in the frame of the course
   void read(double t, double* y) const;
 };
@@ -152,7 +158,7 @@ class Nutation {
   double at_T1_[states] = {}, at_T2_[states] = {};
   double psi_growth_ = 0, phi_growth_ = 0;    // rad, from T1 to T2
   double delta_ = 0;                          // that of psi less the nearest multiple of pi
-  double pair_ = 0;                           // factor of the sum over pairs of halves
+  double pair_advance_ = 0;                   // m, factor of the sum over pairs of halves
   Complex rotation_at_T1_, mirror_rotation_;  // exp(i psi(T1)), exp(2 i psi(T2))
   Complex displacement_;                      // from O(T1) to O(T2), seen along psi(T1)
 };
@@ -160,13 +166,11 @@ class Nutation {
 // enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
 class Orbit {
  public:
-  // Integrates the motion by DOP853, unless it is `known`: the one integrated last, but for psi, phi and place of its
-  // start. The solver has to be started anew before anything else is asked of it. The nutation is a function of
-  // problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
-  // heading. False, and the orbit is left, where the motion is refused: no two turning points within a fixed number of
-  // steps, a swing no larger than errors, rates that have not the symmetry, or that depend on heading, roll angle or
-  // place. The caller then steps through the motion from its start.
-  bool enter(const FreeMotion& motion, bool known, solver::Solver& solver);
+  // Integrates the motion by DOP853, unless it has the shape of the one integrated last. The solver has to be started
+  // anew before anything else is asked of it. The nutation is a function of problem, tolerance, theta and the rates in
+  // y0 alone: bit-identical in every process and from every place and heading. False, and the orbit is left, where the
+  // motion is refused (building.cpp): the caller then steps through it from its start.
+  bool enter(const FreeMotion& motion, solver::Solver& solver);
   void leave() { entry_ = {}; }
 
   // s; below zero where the orbit is left
@@ -176,8 +180,11 @@ class Orbit {
   void read(double t, double* y) const { nutation_.read(entry_, t, y); }
 
  private:
-  Nutation nutation_;  // of the motion integrated last; of no course where that was refused
-  Entry entry_;        // on it, of the present run
+  // The motion integrated last, if there was one; of no course where it was refused.
+  bool any_ = false;
+  std::array<double, most_shape> shape_ = {};
+  Nutation nutation_;
+  Entry entry_;  // on it, of the present run
 };
 
 }  // namespace orbit

@@ -8,7 +8,7 @@
 
 namespace solver {
 
-inline constexpr int max_states = 12, max_extremes = 18, max_degree = 12, max_watched = 13;
+inline constexpr int max_states = 10, max_extremes = 20, max_degree = 12, max_watched = 13;
 
 enum class Method : int { adams, bdf, runge_kutta, collocation };
 
@@ -42,7 +42,7 @@ struct Settling {
 // `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
 // nothing else.
 struct Problem {
-  int states;  // 8 or 12: the length of loops, known at compile time
+  int states;  // 8, or 10 for collocation alone: the length of loops, known at compile time
   void* owner;
   // (t, y) => y_dot = f(t, y); returns the least of the quick margins, infinite if there is none; NaN where the rates
   // are not finite: the solver then tries a smaller step.

@@ -18,6 +18,8 @@ namespace {
 
 using dormand_prince::stages;
 
+constexpr int width = 8;  // of a problem's state
+
 CONSTANT(double, share_of_tolerance, 0.03, "1",
          "error of a step over that of the solution, tuned on the wheel's scenes");
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
@@ -44,8 +46,7 @@ constexpr double time_of = std::accumulate(dormand_prince::a[i], dormand_prince:
 
 }  // namespace
 
-// One step of the engine, as wide as the state.
-template <int width>
+// One step of the engine.
 struct RungeKutta::Work {
   RungeKutta& engine;
   const Problem& problem;
@@ -233,13 +234,6 @@ struct RungeKutta::Work {
   }
 };
 
-// What `body` makes of the work on a step.
-template <class Body>
-auto RungeKutta::with_work(const Problem& problem, Counters* counters, Step* step, const Body& body) {
-  if (problem.states == 8) return body(Work<8>{*this, problem, counters, *step});
-  return body(Work<max_states>{*this, problem, counters, *step});
-}
-
 bool RungeKutta::start(const Problem&) {
   limit_ = 0;
   rests_ = false;
@@ -249,14 +243,16 @@ bool RungeKutta::start(const Problem&) {
 }
 
 bool RungeKutta::advance(const Problem& problem, double stop, Counters* counters, Step* step) {
-  failure_ = with_work(problem, counters, step, [&](auto work) { return work.make_step(stop); });
+  Work work = {*this, problem, counters, *step};
+  failure_ = work.make_step(stop);
   limit_ = 0;
   return !failure_;
 }
 
 void RungeKutta::expand(const Problem& problem, Step* step) {
   Counters uncounted = {};  // else the counts would depend on the instants that are read
-  with_work(problem, &uncounted, step, [](auto work) { work.expand(); });
+  Work work = {*this, problem, &uncounted, *step};
+  work.expand();
 }
 
 void RungeKutta::visit(support::Archive& archive, const Problem& problem, const Step& step) {

@@ -1,4 +1,5 @@
-// DOP853: the Runge-Kutta pair of Dormand and Prince, order 8, dense output of order 7 (dormand_prince.hpp).
+// DOP853: the Runge-Kutta pair of Dormand and Prince, order 8, dense output of order 7 (dormand_prince.hpp), of
+// problems of eight states.
 //
 // Nothing is kept from step to step except the wanted size of the next one: a restart is free and a snapshot is a copy.
 #pragma once
@@ -28,10 +29,7 @@ class RungeKutta final : public Engine {
   void limit_first_step(double dt) { limit_ = dt; }
 
  private:
-  template <int width>
   struct Work;
-  template <class Body>
-  auto with_work(const Problem& problem, Counters* counters, Step* step, const Body& body);
 
   double liked_ = 0;                           // size of the next step, s; 0: none was made
   double limit_ = 0;                           // of the first step after the last start, s; 0: none

@@ -24,7 +24,7 @@ double way_to_layer(const Setup& setup, const InForce& now, double, const double
 // In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
 bool can_change_spin(const Setup& setup, const InForce& now) {
   const WheelFrictionKind law = now.law().kind;
-  if (law == WHEEL_FRICTIONLESS) return setup.exchanged;
+  if (law == WHEEL_FRICTIONLESS) return setup.model_exchange;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
 
@@ -40,12 +40,12 @@ double spin_left(const Setup& setup, const InForce& now, double t, const double*
   return -now.scene_at(t).load.brake / setup.moment_scale;
 }
 
-int spin_alone(const InForce& now) { return now.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : -1; }
+int spin_alone(const InForce& now) { return now.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : all_states(now); }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& now) {
   const WheelFrictionKind law = now.law().kind;
   if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
-  decide_law(setup, t, y, now, law == WHEEL_HELD);
+  law == WHEEL_HELD ? release(setup, t, y, now) : decide_law(setup, t, y, now);
 }
 
 bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
@@ -86,7 +86,7 @@ constexpr EventRow event_rows[] = {
     {.event = Event::changes_layer,
      .can_occur = can_change_layer,
      .value = way_to_layer,
-     .exchanged = false,  // it leaves the law to the caller's solver
+     .in_model_exchange = false,  // it leaves the law to the caller's solver
      .follow = change_layer},
     {.event = Event::spin_changes,
      .can_occur = can_change_spin,
@@ -100,21 +100,26 @@ constexpr EventRow event_rows[] = {
      .follow = begin_slide,
      .ending = "needs a friction coefficient above mu_max",
      .limit = [](const InForce& now) { return now.road.mu_max; }},
-    {.event = Event::slip_ends, .can_occur = is_sliding, .value = slip_left, .exchanged = false, .follow = end_slip},
+    {.event = Event::slip_ends,
+     .can_occur = is_sliding,
+     .value = slip_left,
+     .in_model_exchange = false,
+     .follow = end_slip},
     {.event = Event::lost_contact,
      .can_occur = always,
      .quick_value = pressure_of,
      .rounding = 1e-9,
      .ends = [](const Setup& setup) { return !setup.keep_contact; },
+     .bends_friction = true,
      .ending = "lifted off the road",
-     .observed = "the road pulls, and the wheel would lift off without keep_contact"},
+     .observation = "the road pulls, and the wheel would lift off without keep_contact"},
     {.event = Event::jams,
      .can_occur = is_sliding,
      .quick_value = jam_left,
-     .exchanged = false,
+     .in_model_exchange = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
-     .limit = [](const InForce& now) { return now.mu_slide(); }},
+     .limit = [](const InForce& now) { return now.scene.mu_slide; }},
     {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = height_of,
@@ -126,7 +131,7 @@ namespace {
 
 constexpr bool is_sound(const EventRow& row) {
   return row.event == static_cast<Event>(&row - event_rows + 1) && !row.value == !!row.quick_value && row.can_occur &&
-         !row.ends == !row.ending && (row.follow || row.ends || row.observed);
+         !row.ends == !row.ending && (row.follow || row.ends || row.observation);
 }
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
@@ -136,17 +141,16 @@ constexpr double largest_margin = 1e100;
 
 // (value) => margin: below zero where the event has occurred
 double signed_margin(const EventRow& row, const InForce& now, double value) {
-  return row.observed ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
+  return row.observation ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
 }
 
 }  // namespace
 
-// Where the ground begins to pull or to press, the motion goes on as it was if there is no friction.
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
   if (row.follow) row.follow(setup, t, y, now);
-  if (row.observed) now.cross(row.event);
-  const bool acts = now.law().kind != WHEEL_FRICTIONLESS || now.slides();
-  return row.follow || (row.event == Event::lost_contact && acts) ? Consequence::bends : Consequence::goes_on;
+  if (row.observation) now.cross(row.event);
+  const bool has_friction = now.law().kind != WHEEL_FRICTIONLESS || now.slides();
+  return row.follow || (row.bends_friction && has_friction) ? Consequence::bends : Consequence::goes_on;
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
@@ -171,7 +175,7 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
   return least < -largest_margin ? -largest_margin : least;
 }
 
-void place_observed(const Setup& setup, double t, const double* y, InForce& now) {
+void find_below(const Setup& setup, double t, const double* y, InForce& now) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, now) && margin_of(row, setup, now, t, y) < 0)
       now.cross(row.event);

@@ -11,27 +11,33 @@ using solver::Consequence;
 
 CONSTANT(double, spin_error, 1e-3, "of the scale of rates", "beyond zero by less, a spin is an error of the solver");
 
+inline int all_states(const InForce&) { return -1; }
+
+// Two rows are treated by name in exchange.cpp: a spin that the caller has set is no event of `spin_changes`, and
+// `lies_flat` alone is asked for beyond flat.
 struct EventRow {
   Event event;
   // Whether it can occur, given what is in force.
   bool (*can_occur)(const Setup& setup, const InForce& now);
-  // Smooth, scaled to about one, and positive until the event. An observed event has the other sign after it, up to
-  // its next change of sign. A row has one of two:
+  // Its value is smooth, scaled to about one, and positive until the event; that of an observed event changes its sign
+  // there again and again. A row has one of these two. The quick one takes state and normal force, N, which come with
+  // the rates: the solver looks at it only where it comes near zero.
   double (*value)(const Setup& setup, const InForce& now, double t, const double* y) = nullptr;
-  // of state and normal force, N, which come with the rates: the solver looks at it only where it comes near zero.
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
-  // The only state that the value reads, below zero where it reads all; null: it reads all.
-  int (*state)(const InForce& now) = nullptr;
-  double rounding = 0;                         // where `observed` is set: a value beyond zero by less does not count
-  bool exchanged = true;                       // it can occur in model exchange, and has an event indicator there
+  // The only state that the value reads, below zero where it reads all.
+  int (*state)(const InForce& now) = all_states;
+  double rounding = 0;            // where there is an observation: a value beyond zero by less does not count
+  bool in_model_exchange = true;  // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
-  // What is in force from here on, and the state (a rate of zero exactly), where it bends the motion.
+  // Where it bends the motion: what is in force from here on, and the state, of which it sets a rate that is exactly
+  // zero, or the slip.
   void (*follow)(const Setup& setup, double t, double* y, InForce& now) = nullptr;
-  // For messages, as plain text: what has ended the run, to stand behind "the wheel"; the value of the parameter at its
-  // end, if it names one; and what is observed, to stand behind the instant.
+  bool bends_friction = false;  // it bends the motion where friction acts
+  // For messages, as plain text: the reason why the run has ended, which follows "the wheel"; the parameter's value at
+  // the end of that text, if there is one; and the observation, which follows the instant.
   const char* ending = nullptr;
   double (*limit)(const InForce& now) = nullptr;
-  const char* observed = nullptr;
+  const char* observation = nullptr;
 };
 
 inline constexpr int row_count = event_count - 1;
@@ -39,7 +45,7 @@ extern const EventRow event_rows[row_count];  // in the order of Event
 inline const EventRow& event_row(Event event) { return event_rows[static_cast<int>(event) - 1]; }
 inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends && row.ends(setup); }
 // Logged where it first occurs in a run.
-inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observed && !ends_run(row, setup); }
+inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observation && !ends_run(row, setup); }
 
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else.
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
@@ -51,6 +57,6 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& now, do
 double least_margin(const Setup& setup, const InForce& now, const double* y, double N);
 
 // (t, y) => which observed events lie below zero, after a motion in which they were not followed
-void place_observed(const Setup& setup, double t, const double* y, InForce& now);
+void find_below(const Setup& setup, double t, const double* y, InForce& now);
 
 }  // namespace wheel

@@ -55,14 +55,14 @@ double indicator(const EventRow& row, const Record& r) {
 
 // Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred.
 bool has_occurred(const EventRow& row, const Record& r) {
-  if (!row.exchanged || !row.can_occur(r.setup, r.run.in_force)) return false;
+  if (!row.in_model_exchange || !row.can_occur(r.setup, r.run.in_force)) return false;
   return margin_at(row, r) <= 0 || margin_at(row, r, soon * r.setup.time_scale) <= 0;
 }
 
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else
 // the caller has set it, and it is kept.
 bool is_led(const Record& r) {
-  const WheelScene& scene = r.run.in_force.scene_at(r.run.t);
+  const WheelScene scene = r.run.in_force.scene_at(r.run.t);
   const double spin = r.run.y[WHEEL_OMEGA_3] / r.setup.rate_scale;
   if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
   const double omega_z_dot = rates_of(r.setup, scene, r.run.y).y_dot[WHEEL_OMEGA_3];
@@ -107,7 +107,7 @@ bool decide_anew(Wheel& w) {
 }  // namespace
 
 int indicator_count() {
-  const auto is_exchanged = [](const EventRow& row) { return row.exchanged; };
+  const auto is_exchanged = [](const EventRow& row) { return row.in_model_exchange; };
   return static_cast<int>(std::count_if(std::begin(event_rows), std::end(event_rows), is_exchanged));
 }
 
@@ -123,7 +123,7 @@ void act_at_once(Wheel& w) {
   InForce& now = w.run.in_force;
   const InForce before = now;
   now.take_over(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs);
-  w.run.news = News::none;
+  w.run.pending = Pending::nothing;
   if (now.road == before.road || w.run.phase == Phase::event_mode) return;
   decide_law(w.setup, w.run.t, w.run.y, now);
   log_changes(w, before);
@@ -148,15 +148,15 @@ void set_state(Wheel& w, unsigned variable, double value) {
   decide_law(w.setup, w.run.t, w.run.y, w.run.in_force);
 }
 
-void states(const Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }
+void read_states(const Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }
 
-void nominals(const Wheel& w, double* x) {
+void read_nominals(const Wheel& w, double* x) {
   double scales[max_states];
   scales_at(w.setup, w.run.y[WHEEL_OMEGA_3], scales);
   for (int i = 0; i < state_count; ++i) x[i] = scales[place_in_y(i)];
 }
 
-void derivatives(Wheel& w, double* x_dot) {
+void read_derivatives(Wheel& w, double* x_dot) {
   double x[state_count], y[max_states] = {};
   std::copy_n(w.run.x, state_count, x);
   keep_above_ground(x);
@@ -165,16 +165,16 @@ void derivatives(Wheel& w, double* x_dot) {
   rates_of_x(w, x, y, x_dot);
 }
 
-void indicators(Wheel& w, double* z) {
+void read_indicators(Wheel& w, double* z) {
   ++w.run.counted.roots;
   for (const EventRow& row : event_rows)
-    if (row.exchanged) *z++ = indicator(row, w);
+    if (row.in_model_exchange) *z++ = indicator(row, w);
 }
 
 bool has_event(Wheel& w) {
   ++w.run.counted.roots;
   return std::any_of(std::begin(event_rows), std::end(event_rows),
-                     [&](const EventRow& row) { return row.exchanged && indicator(row, w) <= 0; });
+                     [&](const EventRow& row) { return row.in_model_exchange && indicator(row, w) <= 0; });
 }
 
 bool decide(Wheel& w) {

@@ -22,15 +22,16 @@ void enter(Wheel& wheel, Phase mode);
 // (time: s, the caller's)
 void set_time(Wheel& wheel, double time);
 void set_states(Wheel& wheel, const double* x);
-// Of a variable that is a state, by itself: the law of friction is decided for it.
+// Of a variable that is a state, by itself: the law of friction is decided for it. A state that is only tried is no
+// event, and nothing is logged.
 void set_state(Wheel& wheel, unsigned variable, double value);
 
-// Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins
-// are those of the flat wheel, which are finite. Evaluations are counted.
-void states(const Wheel& wheel, double* x);
-void nominals(const Wheel& wheel, double* x);
-void derivatives(Wheel& wheel, double* x_dot);
-void indicators(Wheel& wheel, double* z);
+// Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins,
+// but for that of lying flat, are those of the flat wheel, which are finite. Evaluations are counted.
+void read_states(const Wheel& wheel, double* x);
+void read_nominals(const Wheel& wheel, double* x);
+void read_derivatives(Wheel& wheel, double* x_dot);
+void read_indicators(Wheel& wheel, double* z);
 bool has_event(Wheel& wheel);
 
 // Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on

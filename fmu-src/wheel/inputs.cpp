@@ -114,23 +114,22 @@ bool Inputs::change_at(double t, double rounding, const Polynomials& asked) cons
   return false;
 }
 
-void Inputs::stay(double t, Polynomials& asked) const {
-  for (int i = 0; i < inputs_count; ++i) {
-    std::fill_n(asked[i] + 1, max_order, 0.0);
-    asked[i][0] = value_at(c[i], t - origin);
-  }
-  asked[brake_input][0] = std::fmax(asked[brake_input][0], 0);  // like any brake that is set
+double Inputs::value_of(int input, double t) const {
+  const double value = value_at(c[input], t - origin);
+  return input == brake_input ? std::fmax(value, 0) : value;
 }
 
 int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   int found = 0;
+  const auto take = [&](double tau) {
+    const double t = origin + tau;
+    if (t > t_lo && t < t_hi) instants[found++] = t;
+  };
   for (const auto& polynomial : c) {
     double zeros[2];
-    for (int k = zeros_of_slope(polynomial, zeros); k > 0; --k) {
-      const double t = origin + zeros[k - 1];
-      if (t > t_lo && t < t_hi) instants[found++] = t;
-    }
+    for (int k = zeros_of_slope(polynomial, zeros); k > 0; --k) take(zeros[k - 1]);
   }
+  for (int i = guide_input; i < inputs_count; ++i) take(-c[i][2] / (3 * c[i][3]));  // of its slope
   std::sort(instants, instants + found);
   return found;
 }
@@ -143,7 +142,8 @@ double Inputs::corner(double t, double until) const {
   int pieces = extremes(t, until, ends);
   ends[pieces++] = until;
   for (int i = 0; i < pieces; ++i) {
-    double lo = t, hi = t = ends[i];
+    double lo = t, hi = ends[i];
+    t = ends[i];
     if (brakes(lo) == brakes(hi)) continue;
     for (;;) {
       const double middle = lo + 0.5 * (hi - lo);

@@ -10,8 +10,8 @@
 
 namespace wheel {
 
-inline constexpr int inputs_count = 9, brake_input = 6, guide_input = 7, max_order = 3,
-                     most_extremes = inputs_count * (max_order - 1);
+inline constexpr int inputs_count = 9, brake_input = 6, guide_input = 7, max_order = 3;
+inline constexpr int most_extremes = inputs_count * (max_order - 1) + (inputs_count - guide_input);
 
 inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
@@ -46,9 +46,10 @@ struct Inputs {
   void set_load_at(double t, WheelLoad& load) const;
   // A brake at zero can only be put on, and one whose polynomial is below zero rests.
   WheelLoad load_rate_at(double t) const;
-  // A derivative holds for one step: at its end, t, every input stays where its polynomial arrived.
-  void stay(double t, Polynomials& asked) const;
-  // (t_lo, t_hi) => instants strictly between them, ascending, at which an input has an extreme; returns their number
+  // (input, t) => its value, of a brake not below zero
+  double value_of(int input, double t) const;
+  // (t_lo, t_hi) => instants strictly between them, ascending, at which an input, or the acceleration of the carrier,
+  // has an extreme; returns their number
   int extremes(double t_lo, double t_hi, double* instants) const;
   // (t, until) => the first instant in (t, until] at which the brake's polynomial passes zero, where the capacity has a
   // corner, s; infinite where there is none

@@ -16,7 +16,7 @@ WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.
 // (moment that would hold the wheel) => rolling against it
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
-// (scene, y) => the law
+// (scene, braked: whether a brake is in use, y) => the law
 WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
   const double omega_z = y[WHEEL_OMEGA_3];
@@ -47,70 +47,76 @@ bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
   return scene.friction.sigma * dynamics_of(setup, scene, y).omega_z_dot >= 0;
 }
 
+// Whether the carrier neither turns nor is asked to.
+bool rests(const Demand& demand, const double* y) {
+  return demand.value(variable::psi_dot_guide) == 0 && demand.value(variable::theta_dot_guide) == 0 &&
+         y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0;
+}
+
+WheelMotion motion_of(const Setup& setup, const WheelScene& scene, const double* y) {
+  WheelKinematics k;
+  formulation_of(setup, scene.contact).kinematics(&setup.scene.wheel, y, &k);
+  const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
+  const double slip_x = u * std::cos(y[WHEEL_CHI]), slip_y = u * std::sin(y[WHEEL_CHI]);
+  return {k.psi, k.theta, k.phi, k.psi_dot, k.theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
+}
+
+// (y) => y after a jump of the carrier to the rates asked for
+void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y) {
+  if (rests(demand, y)) return;
+  WheelMotion motion = motion_of(setup, scene, y);
+  WheelScene ramp = scene;
+  // The jump is a ramp that takes no time: only a brake that presses at this instant acts in it.
+  ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);
+  const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
+  const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
+  if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
+    ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
+  wheel_jump(&ramp, hold, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), &motion);
+  set_out(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+}
+
 }  // namespace
+
+void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y) {
+  if (rests(demand, y)) return;
+  WheelMotion motion = motion_of(setup, scene, y);
+  motion.psi_dot = demand.value(variable::psi_dot_guide);
+  motion.theta_dot = demand.value(variable::theta_dot_guide);
+  set_out(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+}
 
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
   now.take_over(setup, road_asked(demand), t, demand.inputs);
-  if (setup.steered()) set_guide_rates(setup, demand, now.scene_at(t), false, y);
+  if (setup.steered()) jump_to_guide_rates(setup, demand, now.scene_at(t), y);
   decide_contact(setup, t, y, now);
-}
-
-void InForce::take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials) {
-  road = asked;
-  scene_.wheel = setup.scene.wheel;
-  scene_.wheel.s = road.s;
-  if (road.slope != 0) wheel_set_slope(&scene_.wheel, setup.scene.wheel.g_n, road.slope, road.slope_direction);
-  scene_.mu_slide = std::fmin(road.mu_slide, road.mu_max);
-  scene_.guided = setup.scene.guided;
-  set_ground();
-  inputs.take_over(t, polynomials);
-  inputs.set_load_at(t, scene_.load);
-}
-
-void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y) {
-  const WheelFormulation& f = formulation_of(setup, scene.contact);
-  const double psi_dot = demand.value(variable::psi_dot_guide), theta_dot = demand.value(variable::theta_dot_guide);
-  if (psi_dot == 0 && theta_dot == 0 && y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0) return;
-  WheelKinematics k;
-  f.kinematics(&setup.scene.wheel, y, &k);
-  const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
-  const double slip_x = u * std::cos(y[WHEEL_CHI]), slip_y = u * std::sin(y[WHEEL_CHI]);
-  WheelMotion motion = {k.psi, k.theta, k.phi, psi_dot, theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
-  if (!starts) {
-    motion.psi_dot = k.psi_dot;
-    motion.theta_dot = k.theta_dot;
-    WheelScene ramp = scene;
-    ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);  // what was set asks for it before the ramp
-    const double hold = ramp.friction.kind == WHEEL_HELD ? hold_at(setup, scene, y).reserve : 0;
-    if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
-      ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
-    wheel_jump(&ramp, hold, psi_dot, theta_dot, &motion);
-  }
-  set_out(f, setup.scene.wheel, motion, y);
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
   const bool slips_on = now.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
   if (now.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
-  now.set_contact(WHEEL_GRIPS);
+  now.scene.contact = WHEEL_GRIPS;
   decide_law(setup, t, y, now);
   if (grip_left(setup, now, t, y) >= 0) return;
-  const WheelScene& scene = now.scene_at(t);
+  const WheelScene scene = now.scene_at(t);
   const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(scene, y).N < 0;
   if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
 }
 
-void decide_law(const Setup& setup, double t, const double* y, InForce& now, bool released) {
-  const WheelScene& scene = now.scene_at(t);
-  now.set_law(released ? released_from(hold_at(setup, scene, y)) : friction_at(setup, scene, now.inputs.braked, y));
+void decide_law(const Setup& setup, double t, const double* y, InForce& now) {
+  now.scene.friction = friction_at(setup, now.scene_at(t), now.inputs.braked, y);
+}
+
+void release(const Setup& setup, double t, const double* y, InForce& now) {
+  now.scene.friction = released_from(hold_at(setup, now.scene_at(t), y));
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
-  now.set_contact(WHEEL_SLIDES);
+  now.scene.contact = WHEEL_SLIDES;
   WheelScene scene = now.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
-    now.set_law(law);
+    now.scene.friction = law;
     scene.friction = law;
     y[WHEEL_SLIP] = 2 * least_slip(setup, t);
     y[WHEEL_CHI] = first_direction(scene, y);
@@ -149,12 +155,11 @@ double grip_left(const Setup& setup, const InForce& now, double t, const double*
   return N * std::fabs(N) - (X * X + Y * Y);
 }
 
-[[gnu::noinline]] Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y) {
+Hold hold_at(const Setup& setup, WheelScene scene, const double* y) {
   CONSTANT(double, rounding_of_capacity, 1e-12, "1", "where rounding alone decides, the wheel stays held");
   CONSTANT(double, rounding_of_tau, 1e-13, "weight times length", "the same without a capacity");
-  WheelScene holding = scene;
-  holding.friction = held;
-  const WheelDynamics dynamics = dynamics_of(setup, holding, y);
+  scene.friction = held;
+  const WheelDynamics dynamics = dynamics_of(setup, scene, y);
   const double capacity = wheel_axle_capacity(scene.wheel.s, dynamics.lambda[2], scene.load.brake);
   const double rounding = rounding_of_capacity * capacity + rounding_of_tau * setup.weight * setup.length;
   return {dynamics.tau, capacity + rounding - std::fabs(dynamics.tau)};

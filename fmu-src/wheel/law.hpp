@@ -1,5 +1,6 @@
 // What acts on the wheel from an instant on: road and inputs, the law of rolling resistance after Filippov, and whether
-// the wheel rolls or slides after Coulomb. Pure functions of setup, load and state.
+// the wheel rolls or slides after Coulomb. Results depend on the arguments alone; those that decide write contact and
+// law in `in_force`, and the slip in y.
 #pragma once
 
 #include "constant.hpp"
@@ -11,18 +12,19 @@ namespace wheel {
 // friction. In y it writes the slip, and what a jump of the carrier's rates changes.
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
-// (rates asked for, y) => y: from here on the wheel carrier turns at these rates, with a jump, or, at the start, as if
-// it had always turned so.
-void set_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, bool starts, double* y);
+// (y) => y of a wheel whose carrier has always turned at the rates asked for
+void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y);
 
-// (t, y) => contact, law, slip in y: a slip that is more than nothing goes on; else the wheel rolls where it can, and
-// begins to slide where it cannot.
+// (t, y) => contact, law, slip in y: a slip above the least goes on; else the wheel rolls where it can, and begins to
+// slide where it cannot, unless it lifts off.
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
 // (t, y) => law of friction. At omega_z = 0 after Filippov: held where the moment that holds the wheel is within
-// s N + M_brake, else rolling against that moment. `released`: friction and brake can no longer hold it. A
-// regularized law is decided by the place of omega_z in its layer.
-void decide_law(const Setup& setup, double t, const double* y, InForce& in_force, bool released = false);
+// s N + M_brake, else rolling against that moment. A regularized law is decided by the place of omega_z in its layer.
+void decide_law(const Setup& setup, double t, const double* y, InForce& in_force);
+
+// (t, y) => law of friction of a wheel that friction and brake can no longer hold
+void release(const Setup& setup, double t, const double* y, InForce& in_force);
 
 // (t, y without slip) => contact, law, slip in y: the wheel starts to slide by Coulomb's law, in the direction in which
 // it lets a slip grow and stay.
@@ -51,7 +53,7 @@ inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.ki
 struct Hold {
   double tau, reserve;
 };
-Hold hold_at(const Setup& setup, const WheelScene& scene, const double* y);
+Hold hold_at(const Setup& setup, WheelScene scene, const double* y);
 
 // rad/s, half the width of the layer of a regularized law (Setup::has_layer).
 CONSTANT(double, edge, 20, "omega_s", "1 - tanh(20) is below the last digit; from 19 on");

@@ -23,14 +23,15 @@ Consequence pass_event(Wheel& wheel, Event event) {
   const EventRow& row = event_row(event);
   const InForce before = run.in_force;
   const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
-  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) observe(wheel, event, run.t);
+  if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) log_observation(wheel, event, run.t);
   log_changes(wheel, before, event);
   return consequence;
 }
 
-void observe(Wheel& wheel, Event event, double t) {
-  bool& observed = wheel.run.observed[static_cast<int>(event)];
-  if (!observed) wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), event_row(event).observed);
+void log_observation(Wheel& wheel, Event event, double t) {
+  bool& observed = wheel.run.logged[static_cast<int>(event)];
+  if (!observed)
+    wheel.reporter.log(Topic::warning, "t = %s s: %s.", shown_time(wheel, t), event_row(event).observation);
   observed = true;
 }
 
@@ -76,7 +77,7 @@ void look_at_grip(Wheel& wheel, double t) {
 
 void warn_of_jam(const Wheel& wheel, const Reading& reading) {
   const InForce& now = reading.in_force;
-  if (wheel.run.news == News::none || !now.slides()) return;
+  if (wheel.run.pending != Pending::set || !now.slides()) return;
   if (margin_of(event_row(Event::jams), wheel.setup, now, reading.t, reading.y) < 0)
     wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
                        ending_of(now, Event::jams).text);
@@ -88,7 +89,8 @@ void log_ending(Wheel& wheel, Event event) {
   const Setup& setup = wheel.setup;
   if (wheel.endings++ >= most_logged) return;
   constexpr double rounding = 1e-15;  // of the cosine of a right angle
-  if (event == Event::lies_flat && setup.tilting == 0 && std::fabs(std::cos(setup.start[WHEEL_THETA])) < rounding)
+  if (event == Event::lies_flat && setup.tilting == 0 &&
+      std::fabs(std::cos(setup.initial_state[WHEEL_THETA])) < rounding)
     wheel.reporter.log(Topic::warning,
                        "The wheel started exactly upright: unless a force tipped it, rounding decided when and to "
                        "which side; guided = true keeps it upright.");

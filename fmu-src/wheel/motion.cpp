@@ -3,6 +3,7 @@
 #include "motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -36,12 +37,14 @@ bool has_changed(const Wheel& w) {
   return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
-// What a stage has come to.
 struct Result {
-  Outcome outcome = Outcome::stepped;
-  Event ending = Event::none;     // the event that ends the run, which stands at it
+  Progress progress = Progress::done;
+  Event ending = Event::none;     // the event by which the run has ended, where it stands
   const char* failure = nullptr;  // its reason; null: see the solver
+  bool is_done() const { return progress == Progress::done; }
 };
+Result ended_by(Event event) { return {Progress::ended, event}; }
+Result failed(const char* reason = nullptr) { return {Progress::failed, Event::none, reason}; }
 
 // From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
 // before, anew, and goes on counting.
@@ -53,17 +56,20 @@ Result start_solver(Wheel& w) {
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
       again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
-  return {done ? Outcome::stepped : Outcome::failed};
+  return done ? Result() : failed();
 }
 
-// Stage 1: what was set since the last step is in force.
+// Stage 1: what was set since the last step is in force. From an orbit the motion goes on by steps: they start from
+// nothing, so the restart is counted here, and the first one is as long as any. A motion that is stepped through starts
+// anew, most often under an input that is set at every step: the first step is no longer than the time since the last
+// change.
 Result apply_demand(Wheel& w) {
   Run& run = w.run;
-  const bool changed = run.news != News::none && has_changed(w);
-  run.news = News::none;
+  const bool changed = run.pending != Pending::nothing && has_changed(w);
+  run.pending = Pending::nothing;
   if (!changed) return {};
   const InForce before = run.in_force;
-  if (run.phase == Phase::unfolded) place_observed(w.setup, run.t, run.y, run.in_force);
+  if (run.phase == Phase::unfolded) find_below(w.setup, run.t, run.y, run.in_force);
   enforce(w.setup, w.demand, run.t, run.y, run.in_force);
   log_changes(w, before);
   if (run.phase == Phase::at_start) return {};
@@ -76,28 +82,33 @@ Result apply_demand(Wheel& w) {
   return result;
 }
 
-// The orbit of a run, from its start.
-Shape shape_of(const Demand& demand) {
-  Shape shape = {{}, demand.tolerance, demand.slides};
-  std::copy_n(demand.parameters, first_input, shape.parameters);
+// The numbers that the motion on an orbit follows from.
+using Shape = std::array<double, first_input + 2>;
+static_assert(std::tuple_size_v<Shape> <= orbit::most_shape);
+Shape shape_of(const Record& record) {
+  Shape shape;
+  std::copy_n(record.demand.parameters, first_input, shape.begin());
   for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
-    shape.parameters[v] = 0;
+    shape[v] = 0;
+  shape[first_input] = record.demand.tolerance;
+  shape[first_input + 1] = record.run.can_slide;
   return shape;
 }
 
-// Whether the motion repeats and is unfolded. Builds the orbit of the run, or keeps that of an earlier run of the same
-// shape. False: the solver has to step through the motion.
+// Whether the motion repeats and is unfolded, on an orbit of this run or of an earlier one of the same shape. False:
+// the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
-  const InForce now = w.run.in_force;  // what is observed on the orbit counts where the run passes it
+  const InForce& now = w.run.in_force;
   const bool acted_on = now.law().kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
-  // a carrier that turned it at the start and not any more
-  const bool turned = w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.start);
+  // By a carrier that turned at the start and does not any more.
+  const bool turned =
+      w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.initial_state);
   if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
-  const Shape asked = shape_of(w.demand);
-  const orbit::FreeMotion motion = {problem_of(w), w.demand.tolerance, follow_on_orbit, w.setup.start, largest_angle};
-  const bool entered = w.orbit.enter(motion, w.orbit_shape == asked, w.solver);
-  w.run.in_force = now;
-  w.orbit_shape = asked;
+  Record ahead = static_cast<const Record&>(w);  // events on the orbit are in force for it alone, not yet for the run
+  const Shape shape = shape_of(w);
+  const orbit::FreeMotion motion = {problem_of(ahead),     w.demand.tolerance, follow_on_orbit,
+                                    w.setup.initial_state, largest_angle,      shape};
+  const bool entered = w.orbit.enter(motion, w.solver);
   if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
 }
@@ -116,17 +127,18 @@ void move_to(Wheel& w, double t) {
   if (w.run.phase != Phase::unfolded || w.orbit.course().first_time > t) return;
   for (const EventRow& row : event_rows)
     if (const double first = w.orbit.course().first_times[static_cast<int>(row.event)]; first <= t)
-      observe(w, row.event, first);
+      log_observation(w, row.event, first);
 }
 
-// Latest end of the next step on the way to t, s: where an input varies, t, where its polynomial may end, and no step
-// goes across a corner of a brake's. One next to the time reached has been met.
+// Latest end of the next step on the way to t, s. Where an input varies, it is t, where its polynomial may end, and no
+// step goes across a corner of a brake's. A corner so close ahead that rounding separates it has been met.
 double stop_of(const Wheel& w, double t) {
+  CONSTANT(double, met, 1e-12, "two longest steps", "a corner nearer than this has been met");
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return solver::never;
   if (!inputs.braked) return t;
   const double reached = w.solver.known_until(), ahead = 2 * w.setup.longest_step;
-  return std::fmin(t, inputs.corner(reached + solver::rounding_at(reached) + 1e-12 * ahead, reached + ahead));
+  return std::fmin(t, inputs.corner(reached + solver::rounding_at(reached) + met * ahead, reached + ahead));
 }
 
 // Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): of a small slip time has too few digits for the
@@ -137,12 +149,13 @@ bool is_about_to_jam(const Wheel& w) {
   const double reached = w.solver.known_until();
   double y[max_states];
   w.solver.read(reached, y);
-  return wheel_slip(&w.run.in_force.scene_at(reached), y, y[WHEEL_CHI]).room < little_room;
+  const WheelScene scene = w.run.in_force.scene_at(reached);
+  return wheel_slip(&scene, y, y[WHEEL_CHI]).room < little_room;
 }
 
 // Stage 3 of a motion that is stepped through, until
-//   t is known: stepped;
-//   an event ends the run, or a step fails where the wheel is about to jam: event;
+//   t is known: done;
+//   an event ends the run, or a step fails where the wheel is about to jam: ended;
 //   a step fails elsewhere, or the solver cannot start: failed;
 //   most_work is done: failed.
 Result step_to(Wheel& w, double t) {
@@ -150,15 +163,15 @@ Result step_to(Wheel& w, double t) {
   const long long work_per_step = w.setup.formulation == &wheel_multibody ? work_per_multibody_step : 1;
   for (long long work = 0; !solver.reaches(t);) {
     if (work >= most_work)
-      return {Outcome::failed, Event::none,
-              "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
-              "extreme, or the communication step is too long"};
+      return failed(
+          "one call may take no more internal steps: a coupling diverges, a force, a brake or a regularized law is "
+          "extreme, or the communication step is too long");
     const long long before = solver.counters().rhs;
     const Outcome outcome = solver.step(stop_of(w, t));
     if (outcome == Outcome::failed) {
-      if (!is_about_to_jam(w)) return {outcome};
+      if (!is_about_to_jam(w)) return failed();
       move_to(w, solver.known_until());
-      return {Outcome::event, Event::jams};
+      return ended_by(Event::jams);
     }
     if (w.run.in_force.inputs.loaded) look_at_grip(w, t);
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
@@ -168,10 +181,10 @@ Result step_to(Wheel& w, double t) {
     move_to(w, solver.known_until());
     update_state(w);
     const auto event = static_cast<Event>(solver.event());
-    if (ends_run(event_row(event), w.setup)) return {outcome, event};
+    if (ends_run(event_row(event), w.setup)) return ended_by(event);
     if (pass_event(w, event) == Consequence::goes_on)
       solver.resume();
-    else if (const Result result = start_solver(w); result.outcome == Outcome::failed)
+    else if (const Result result = start_solver(w); !result.is_done())
       return result;
   }
   return {};
@@ -182,20 +195,19 @@ Result proceed(Wheel& w, double t) {
   if (w.run.phase == Phase::stepping) return step_to(w, t);
   if (t <= w.orbit.until()) return {};
   const std::optional<int> ending = w.orbit.course().ending;
-  if (!ending) return {Outcome::failed, Event::none, "psi or phi would turn so far that the angle has too few digits"};
+  if (!ending) return failed("psi or phi would turn so far that the angle has too few digits");
   move_to(w, w.orbit.until());
-  return {Outcome::event, static_cast<Event>(*ending)};
+  return ended_by(static_cast<Event>(*ending));
 }
 
-// Stage 4: the run stands at t, up to which the solution is known. Inputs that vary stay where they arrived, unless
-// they are set again.
+// Stage 4: the run stands at t, up to which the solution is known.
 void arrive(Wheel& w, double t) {
   if (!(t > w.run.t)) return;
   move_to(w, t);
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return;
-  inputs.stay(t, w.demand.inputs);
-  w.run.news = News::stays;
+  w.demand.hold(inputs, t);
+  w.run.pending = Pending::held_inputs;
 }
 
 // The state is that before the step, and stays so.
@@ -211,24 +223,25 @@ void fail(Wheel& w, const Run& before, const char* failure) {
   w.run.phase = Phase::broken;
 }
 
-Outcome advance_by_stages(Wheel& w, double t) {
+Progress advance_by_stages(Wheel& w, double t) {
   update_state(w);
   Run before = w.run;
   before.counted = counters_of(w.run, w.solver);
   const bool moves = t > w.run.t;
   Result result = apply_demand(w);
-  if (result.outcome == Outcome::stepped && moves) result = set_in_motion(w);
-  if (result.outcome == Outcome::stepped && moves) result = proceed(w, t);
-  if (result.outcome == Outcome::stepped) arrive(w, t);
-  if (result.outcome == Outcome::event) end_run(w, result.ending);
-  if (result.outcome == Outcome::failed) fail(w, before, result.failure);
-  return result.outcome;
+  if (result.is_done() && moves) result = set_in_motion(w);
+  if (result.is_done() && moves) result = proceed(w, t);
+  if (result.is_done()) arrive(w, t);
+  if (result.progress == Progress::ended) end_run(w, result.ending);
+  if (result.progress == Progress::failed) fail(w, before, result.failure);
+  return result.progress;
 }
 
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
-  const bool may_vary = w.run.news != News::none || w.run.phase == Phase::at_start || w.run.in_force.inputs.varies;
+  const bool may_vary =
+      w.run.pending != Pending::nothing || w.run.phase == Phase::at_start || w.run.in_force.inputs.varies;
   if (!may_vary || !varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
@@ -242,10 +255,10 @@ Excess excess_of(const Wheel& w, double h) {
   return {};
 }
 
-Outcome advance(Wheel& w, double t) {
-  if (w.run.news != News::none || !is_known(w, t)) return advance_by_stages(w, t);
+Progress advance(Wheel& w, double t) {
+  if (w.run.pending != Pending::nothing || !is_known(w, t)) return advance_by_stages(w, t);
   arrive(w, t);
-  return Outcome::stepped;
+  return Progress::done;
 }
 
 }  // namespace wheel

@@ -5,9 +5,14 @@
 
 namespace wheel {
 
-// (t: s, clock of the run) => `stepped`: it was reached; `event`: the run ended at run.t; `failed`: the state is that
-// before the call
-[[nodiscard]] solver::Outcome advance(Wheel& wheel, double t);
+// How far a step, or a stage of it, has come.
+enum class Progress {
+  done,
+  ended,   // the run, at run.t, by an event
+  failed,  // the state is that before the step
+};
+// (t: s, clock of the run)
+[[nodiscard]] Progress advance(Wheel& wheel, double t);
 
 // (h: s) => the first input whose polynomial would leave its bounds in the next step, of h, the value that it would
 // reach, and the limit; no limit: none. A brake falls to zero at most.

@@ -12,31 +12,35 @@
 namespace wheel {
 namespace {
 
-const Wheel& wheel_of(const void* owner) { return *static_cast<const Wheel*>(owner); }
+const Record& record_of(const void* owner) { return *static_cast<const Record*>(owner); }
 
-// (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls. States beyond
-// those of the equations rest.
+// (t) => the scene. Evaluations ask for it: where no input varies, it is not copied.
+const WheelScene& scene_at(const InForce& now, double t, WheelScene& room) {
+  return now.inputs.varies ? room = now.scene_at(t) : now.scene;
+}
+
+// (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
-  const Setup& setup = wheel_of(owner).setup;
-  const InForce& now = wheel_of(owner).run.in_force;
-  const WheelScene& scene = now.scene_at(t);
+  const Setup& setup = record_of(owner).setup;
+  const InForce& now = record_of(owner).run.in_force;
+  WheelScene room;
+  const WheelScene& scene = scene_at(now, t, room);
   const WheelFormulation& formulation =
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
   const double N = formulation.derivative(&scene, y, y_dot);
-  if (states > WHEEL_REDUCED_STATES) std::fill(y_dot + formulation.states, y_dot + states, 0.0);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
   return least_margin(setup, now, y, N);
 }
 
-// (theta, |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2 / sin(theta)
-// magnifies that of theta, of which a tenth is left over many steps. In (24) accelerations of the size of
-// r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole on the direction of a slip,
-// which follows them at once.
-double rounding_of_rates(double theta, double heading, bool slides) {
-  const double cancels = slides ? heading * heading : heading;
+// (theta, heading_rate: |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2
+// / sin(theta) magnifies that of theta, whose sign changes from step to step: over many, a tenth remains. In (24)
+// accelerations of the size of r_0 psi_dot^2 cancel: their rounding acts for less than 1 / psi_dot in a step, but whole
+// on the direction of a slip, which follows them at once.
+double rounding_of_rates(double theta, double heading_rate, bool slides) {
+  const double cancels = slides ? heading_rate * heading_rate : heading_rate;
   return std::numeric_limits<double>::epsilon() * std::fmax(0.1 * theta / angle_from_flat(theta), cancels);
 }
 
@@ -45,16 +49,15 @@ double rounding_of_rates(double theta, double heading, bool slides) {
 // fraction of that width.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
-  const Setup& setup = wheel_of(owner).setup;
-  const InForce& now = wheel_of(owner).run.in_force;
+  const Setup& setup = record_of(owner).setup;
+  const InForce& now = record_of(owner).run.in_force;
   const double theta = y[WHEEL_THETA], spin = y[WHEEL_OMEGA_3];
   CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
-  CONSTANT(double, width, 10, "omega_s over sqrt(tolerance)",
-           "error of the spin in a regularized law, of second order");
-  const bool multibody = setup.formulation == &wheel_multibody;
+  CONSTANT(double, width, 10, "omega_s sqrt(tolerance)", "error of the spin in a regularized law, of second order");
   const double slow = share * setup.tolerance;
-  const double heading = multibody ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
-  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading, now.slides()));
+  const double heading_rate =
+      setup.is_multibody() ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
+  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading_rate, now.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, spin), least);
   double scales[max_states];
   scales_at(setup, spin, scales);
@@ -67,12 +70,14 @@ void weights(void* owner, double share, const double* y, double* weights) {
 
 // (event, t, y) => its margin
 double margin(void* owner, int event, double t, const double* y) {
-  return margin_of(event_row(static_cast<Event>(event)), wheel_of(owner).setup, wheel_of(owner).run.in_force, t, y);
+  return margin_of(event_row(static_cast<Event>(event)), record_of(owner).setup, record_of(owner).run.in_force, t, y);
 }
 
-// (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi
+// (t, y, directions chi of the slip) => slopes of |u| chi_dot by chi: that of the last direction for all, which is
+// where a slip settles. The collocation's iteration converges with it, to the solution that it has with each one's own.
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
-  const WheelScene& scene = wheel_of(owner).run.in_force.scene_at(t);
+  WheelScene room;
+  const WheelScene& scene = scene_at(record_of(owner).run.in_force, t, room);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
@@ -80,8 +85,8 @@ void slopes_of_turning(void* owner, double t, const double* y, std::span<const d
 // forward and backward; zero where the ground pulls and no brake acts. `others`: of each rate by that of omega_z.
 void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes,
                     double* others) {
-  const Setup& setup = wheel_of(owner).setup;
-  WheelScene scene = wheel_of(owner).run.in_force.scene_at(t);
+  const Setup& setup = record_of(owner).setup;
+  WheelScene scene = record_of(owner).run.in_force.scene_at(t);
   scene.friction = {WHEEL_ROLLING, 1, 0};
   const Rates forward = rates_of(setup, scene, y);
   scene.friction = {WHEEL_ROLLING, -1, 0};
@@ -98,18 +103,18 @@ void slopes_of_spin(void* owner, double t, const double* y, std::span<const doub
 
 int extremes(void* owner, double t_lo, double t_hi, double* instants) {
   static_assert(most_extremes <= solver::max_extremes);
-  return wheel_of(owner).run.in_force.inputs.extremes(t_lo, t_hi, instants);
+  return record_of(owner).run.in_force.inputs.extremes(t_lo, t_hi, instants);
 }
 
 }  // namespace
 
-solver::Problem problem_of(Wheel& wheel) {
-  const Setup& setup = wheel.setup;
-  const InForce& now = wheel.run.in_force;
+solver::Problem problem_of(Record& record) {
+  const Setup& setup = record.setup;
+  const InForce& now = record.run.in_force;
   solver::Problem problem = {};
-  const bool few = formulation_of(setup, now.contact()).states == WHEEL_REDUCED_STATES;
+  const bool few = formulation_of(setup, now.scene.contact).states == WHEEL_REDUCED_STATES;
   problem.states = few ? WHEEL_REDUCED_STATES : max_states;
-  problem.owner = &wheel;
+  problem.owner = &record;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
   if (now.inputs.varies) problem.extremes = extremes;
@@ -119,25 +124,24 @@ solver::Problem problem_of(Wheel& wheel) {
   problem.longest_step = setup.longest_step;
   if (now.law().kind == WHEEL_REGULARIZED) {
     problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
-    const double rate = rates_of(setup, now.scene_at(wheel.run.t), wheel.run.y).y_dot[WHEEL_OMEGA_3];
+    const double rate = rates_of(setup, now.scene_at(record.run.t), record.run.y).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
   if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
     if (row.can_occur(setup, now)) {
-      const int state = row.state ? row.state(now) : -1;
-      problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, state});
+      problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, row.state(now)});
     }
   return problem;
 }
 
 Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
-  auto& wheel = *static_cast<Wheel*>(owner);
+  auto& record = *static_cast<Record*>(owner);
   const EventRow& row = event_row(static_cast<Event>(event));
-  if (ends_run(row, wheel.setup)) return Consequence::ends;
+  if (ends_run(row, record.setup)) return Consequence::ends;
   double state[max_states] = {};  // longer than that of the orbit, which no event moves
   std::copy_n(y, WHEEL_REDUCED_STATES, state);
-  return follow_event(row, wheel.setup, t, state, wheel.run.in_force);
+  return follow_event(row, record.setup, t, state, record.run.in_force);
 }
 
 solver::Method method_of(const Setup& setup, const InForce& now) {

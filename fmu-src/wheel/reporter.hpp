@@ -36,12 +36,12 @@ class NumberText {
 
 enum class Topic { event, warning, error, discard };
 
-// This one takes no message.
+// Takes the messages of a wheel. This one drops them.
 struct Reporter {
   static constexpr int longest = 512;  // message, with the zero at its end
 
   Reporter() = default;
-  Reporter(const Reporter&) = delete;  // it would take no message any more
+  Reporter(const Reporter&) = delete;  // a copy would drop them
 
   virtual bool listens(Topic) const { return false; }
   virtual void take(Topic, const char*) const {}

@@ -56,66 +56,60 @@ inline Road road_asked(const Demand& demand) {
   return {v[variable::s], v[variable::mu_max], v[variable::mu_slide], v[variable::slope], v[variable::slope_direction]};
 }
 
-// What acts on the wheel: road, inputs and observed events, the contact and the law of friction, and the scene that
-// follows for the equations. Without a law until one is decided.
-class InForce {
- public:
-  Road road = {};  // as it was asked for
+// What acts on the wheel, and the scene that follows from it for the equations. Plain numbers, each with one writer.
+struct InForce {
+  // By take_over: the road as it was asked for, and the inputs.
+  Road road = {};
   Inputs inputs;
-  bool below[event_count] = {};  // for each observed event: its value has fallen below zero and has not risen since
+  // By cross, for each event that is observed: its value has fallen below zero and has not risen since.
+  bool below[event_count] = {};
+  // Contact and law by law.cpp, which decides them; until then there is no law. The rest follows from the above, with
+  // the load at the instant from which the inputs count.
+  WheelScene scene = {};
 
   InForce() = default;
   // Before anything is set: on a level road without inputs.
-  explicit InForce(const Setup& setup) : scene_(setup.scene) {}
-  // Road and inputs, in force from t on, and the scene that follows from them, from `below` and from the setup. A
-  // mu_max set below mu_slide counts for both.
+  explicit InForce(const Setup& setup) : scene(setup.scene) {}
+  // Road and inputs, in force from t on, and the scene that follows. A mu_max set below mu_slide counts for both.
   void take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials);
-  void cross(Event event) {
-    below[static_cast<int>(event)] = !is_below(event);
-    set_ground();
-  }
-  void set_law(const WheelFriction& law) { scene_.friction = law; }
-  void set_contact(WheelContactMode contact) { scene_.contact = contact; }
+  // The value of an observed event changes its sign.
+  void cross(Event event);
 
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
-  const WheelFriction& law() const { return scene_.friction; }
-  WheelContactMode contact() const { return scene_.contact; }
-  bool slides() const { return contact() == WHEEL_SLIDES; }
-  double mu_slide() const { return scene_.mu_slide; }
+  const WheelFriction& law() const { return scene.friction; }
+  bool slides() const { return scene.contact == WHEEL_SLIDES; }
 
-  // Until it is asked for at another instant: most inputs are constant, and a copy costs as much as an evaluation.
-  const WheelScene& scene_at(double t) const {
-    if (inputs.varies) inputs.set_load_at(t, scene_.load);
-    return scene_;
+  WheelScene scene_at(double t) const {
+    WheelScene at_t = scene;
+    if (inputs.varies) inputs.set_load_at(t, at_t.load);
+    return at_t;
   }
-
- private:
-  void set_ground() { scene_.ground = is_below(Event::lost_contact) ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES; }
-
-  mutable WheelScene scene_ = {};  // its load: that at the instant asked for last
 };
 
-// What the caller has set since the last step. It is in force from the next step on; a reading shows it at once.
-enum class News : unsigned char {
-  none,   // nothing
-  stays,  // nothing; the demand holds each input where it arrived in the step, in which one varied
-  set,    // something
+// How the demand differs from what is in force. A reading shows at once what was set, and the next step begins with it.
+enum class Pending : unsigned char {
+  nothing,
+  held_inputs,  // by the end of a step alone: the inputs varied in it, and the demand holds them where they arrived
+  set,          // by the caller
 };
 
 struct Run {
   Phase phase = Phase::created;
   Event ended_by = Event::none;
-  News news = News::none;
+  Pending pending = Pending::nothing;
+  bool can_slide = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
   InForce in_force;
-  double t = 0;            // s, clock of the run: the instant reached
-  double y_time = 0;       // s, clock of the run: the instant of y
+  double t = 0;  // s, clock of the run: the instant reached
+  // The state at y_time, s, clock of the run. It lags behind t while steps go on that nobody reads: update_state brings
+  // it to t. Each step begins with that, so whatever has to do with an event or a start finds it at t.
+  double y_time = 0;
+  double y[max_states] = {};
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
-  double y[max_states] = {};
   double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
-  bool observed[event_count] = {};    // has occurred, and was logged
+  bool logged[event_count] = {};      // of each event that is observed: it has occurred, and was logged
   long long transitions = 0;          // of the friction, rolling and sliding
-  solver::Counters counted = {};      // before the solver was last started from nothing
+  solver::Counters counted = {};      // all but those of the solver at work
 };
 
 // The counts of a run, those of the solver at work included.

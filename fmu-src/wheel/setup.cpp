@@ -51,7 +51,7 @@ void set_error_scales(Setup& setup) {
   // Errors of X_O and Y_O do not feed back into the motion, those of psi only under a force along the road, those of
   // phi only where J_x differs from J_y: they grow little, and may be larger.
   const double scales[max_states] = {
-      1, rate, rate, rate, loose, loose, loose * length, loose * length, setup.slip_scale, 1, 1, 1};
+      1, rate, rate, rate, loose, loose, loose * length, loose * length, setup.slip_scale, 1};
   std::copy_n(scales, max_states, setup.slow_scales);
 }
 
@@ -69,15 +69,22 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
 }
 
 // Those of the kind of run and the formulation, rolling and sliding.
-void choose_equations(Setup& setup, const Demand& demand) {
+void choose_equations(Setup& setup, const Demand& demand, bool can_slide) {
   const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation;
   setup.formulation = multibody ? &wheel_multibody : &wheel_reduced;
-  if (demand.slides) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
+  if (can_slide) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
 }  // namespace
 
-bool check_values(const Demand& demand, const Reporter& reporter, bool at_start) {
+void Demand::hold(const Inputs& arrived, double t) {
+  for (int i = 0; i < inputs_count; ++i) {
+    std::fill_n(inputs[i] + 1, max_order, 0.0);
+    inputs[i][0] = arrived.value_of(i, t);
+  }
+}
+
+bool check_values(const Demand& demand, bool can_slide, Moment moment, const Reporter& reporter) {
   using namespace variable;
   const double* v = demand.parameters;
   bool sound = true, fine[stored_count];
@@ -93,20 +100,19 @@ bool check_values(const Demand& demand, const Reporter& reporter, bool at_start)
           "J_x, J_y, J_z = %s, %s, %s kg m2: none may exceed the sum of the other two.", J_x, J_y, J_z);
   // Another solver is offered the reduced equations alone, and has no states for a slip. The number may be any: a
   // restored state is judged here too.
-  const bool exchanged = demand.kind == Kind::model_exchange;
-  require(!exchanged || v[formulation] != int{multibody_formulation},
+  const bool exchange = demand.kind == Kind::model_exchange;
+  require(!exchange || v[formulation] != int{multibody_formulation},
           "formulation = 3 (multibody): model exchange needs 1 (automatic) or 2 (reduced).");
   require(v[guided] == 0 || (v[psi_dot_start] == 0 && v[theta_dot_start] == 0),
           "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; in "
           "co-simulation psi_dot_guide and theta_dot_guide turn it.",
           psi_dot_start, theta_dot_start);
-  require(!at_start || !(v[mu_slide] > v[mu_max]), "mu_slide = %s: mu_max must be at least as large, and is %s.",
-          mu_slide, mu_max);
-  require(demand.slides || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),
+  require(moment == Moment::during_run || !(v[mu_slide] > v[mu_max]),
+          "mu_slide = %s: mu_max must be at least as large, and is %s.", mu_slide, mu_max);
+  require(can_slide || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),
           "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
-  require(!demand.slides || !exchanged, "mu_slide = %s: model exchange has no states for a slip and needs 0.",
-          mu_slide);
-  sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchanged),
+  require(!can_slide || !exchange, "mu_slide = %s: model exchange has no states for a slip and needs 0.", mu_slide);
+  sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchange),
                           "psi_dot_guide, theta_dot_guide = %s, %s rad/s: these inputs need guided = true "
                           "and co-simulation; otherwise they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
@@ -121,13 +127,13 @@ void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, 
     y[WHEEL_OMEGA_3] = 0;
 }
 
-Setup setup_of(const Demand& demand) {
+Setup setup_of(const Demand& demand, bool can_slide) {
   using namespace variable;
   const double* v = demand.parameters;
   Setup setup = {};
-  setup.exchanged = demand.kind == Kind::model_exchange;
+  setup.model_exchange = demand.kind == Kind::model_exchange;
   setup.scene.guided = v[guided] != 0;
-  choose_equations(setup, demand);
+  choose_equations(setup, demand, can_slide);
   // clang-format off
   setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};
@@ -139,7 +145,7 @@ Setup setup_of(const Demand& demand) {
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
-  const auto origin = [&](double start, double state) { return Origin{start, setup.exchanged ? start : state}; };
+  const auto origin = [&](double start, double state) { return Origin{start, setup.model_exchange ? start : state}; };
   setup.psi = origin(v[psi_start], wheel_less_turns(v[psi_start]));
   setup.phi = origin(v[phi_start], wheel_less_turns(v[phi_start]));
   setup.X_O = origin(v[X_O_start], 0);
@@ -149,8 +155,8 @@ Setup setup_of(const Demand& demand) {
   WheelKinematics start;
   if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.scene.contact = WHEEL_SLIDES;
   const WheelFormulation& formulation = formulation_of(setup, setup.scene.contact);
-  set_out(formulation, setup.scene.wheel, motion, setup.start);
-  formulation.kinematics(&setup.scene.wheel, setup.start, &start);
+  set_out(formulation, setup.scene.wheel, motion, setup.initial_state);
+  formulation.kinematics(&setup.scene.wheel, setup.initial_state, &start);
   set_scales(setup, start);
   set_error_scales(setup);
   return setup;

@@ -16,21 +16,24 @@ namespace wheel {
 // energy stays below it (docs/results/accuracy.md).
 inline constexpr double default_tolerance = 1e-8, tightest_tolerance = 1e-13, loosest_tolerance = 1e-4;
 
-// Room for a state y (wheel_equations.h), as wide as the solver's. A wheel that slides has ten states; the two behind
-// them rest, and count in the mean of an error.
+// Room for a state y (wheel_equations.h), as wide as the solver's: that of a wheel that slides. A wheel that rolls has
+// eight states.
 using solver::max_states;
+static_assert(max_states == WHEEL_SLIDING_STATES);
 
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
-// Parameters and tolerance make the setup when initialization ends; inputs, their derivatives and the road may be set
-// again later and are in force from the next step on.
+// Parameters and tolerance make the setup when initialization ends. Inputs, their derivatives and the road may be set
+// again later, and are in force from the next step on.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
-  bool slides = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
+
+  // A derivative holds for one step: from its end, t, on clock of the run, s, every input stays where it arrived.
+  void hold(const Inputs& arrived, double t);
 
   // Of a variable below stored_count, or of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
@@ -49,7 +52,7 @@ struct Origin {
 };
 
 struct Setup {
-  bool exchanged;                       // model exchange: another solver moves the states
+  bool model_exchange;                  // another solver moves the states
   const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
   // The start: on a level road with s = 0, without loads and law, which are part of the run; a slip or none; guided or
@@ -60,8 +63,8 @@ struct Setup {
   SolverMethod method = automatic_method;
   bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
   bool keep_contact;
-  double tolerance;          // relative, of the whole solution
-  double start[max_states];  // the initial state
+  double tolerance;  // relative, of the whole solution
+  double initial_state[max_states];
   Origin psi, phi, X_O, Y_O;
   double tilting;                   // rad/s, initial rate of turning about e1 and e2
   double time_scale;                // s, of the wheel's motion
@@ -74,12 +77,13 @@ struct Setup {
 
   // A regularized law bends within a few widths, and is steep there: only inside its layer do the solvers meet it.
   // Outside, the law is the exact one to the last digit. Another solver gets the whole law.
-  bool has_layer() const { return friction_law == regularized_law && !exchanged; }
-  bool steered() const { return scene.guided && !exchanged; }  // the carrier turns at the rates that are inputs
+  bool has_layer() const { return friction_law == regularized_law && !model_exchange; }
+  bool steered() const { return scene.guided && !model_exchange; }  // the carrier turns at the rates that are inputs
+  bool is_multibody() const { return formulation == &wheel_multibody; }
 };
 
-// (parameters, tolerance, kind) => setup
-Setup setup_of(const Demand& demand);
+// (parameters, tolerance, kind; whether the wheel can slide) => setup
+Setup setup_of(const Demand& demand, bool can_slide);
 
 // (motion) => y
 void set_out(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion, double* y);
@@ -124,7 +128,8 @@ inline double angle_from_flat(double theta) { return upright - std::fabs(theta -
 // rad: a larger angle has too few digits for a heading.
 inline constexpr double largest_angle = 1e12;
 
-// Logs one message per fault; true if there is none. Later than at the start, mu_max may have been set below mu_slide.
-bool check_values(const Demand& demand, const Reporter& reporter, bool at_start);
+// Logs one message per fault; true if there is none. During a run mu_max may have been set below mu_slide.
+enum class Moment { at_start, during_run };
+bool check_values(const Demand& demand, bool can_slide, Moment moment, const Reporter& reporter);
 
 }  // namespace wheel

@@ -29,30 +29,57 @@ constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12,
                                 {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}, {-2.5, 4.5, -3.5, 1}},
                                 {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}, {-2.5, 4.5, -3.5, 1}}};
 
-// The derivatives of the variables that are asked for, and behind them, where one needs it, those of what acts: of
-// several steps, for each that with the least error.
-struct Quotients {
-  using Parts = std::array<double, sizeof(Acting) / sizeof(double)>;
-  static constexpr std::size_t computed = variable_count - stored_count, count = computed + std::tuple_size_v<Parts>;
-  using Numbers = std::array<double, count>;
-  bool asked[computed] = {}, by_force = false;
-  Numbers centre = {}, slope = {}, error;
-  std::array<bool, count> exact = {};  // smaller steps are of no use, whatever else is asked for
-
-  Quotients() { error.fill(std::numeric_limits<double>::quiet_NaN()); }
+// The derivatives of the variables that are asked for by one quantity x: `ask` for each, `take` or `refine` once, and
+// read them by `of`. `set_to` leads the reading to a value of x, and returns whether there is such a wheel.
+class Quotients {
+ public:
+  Quotients() { error_.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   void ask(unsigned variable) {
-    asked[variable - stored_count] = true;
-    by_force |= row_of(variable).by_force != nullptr;
+    asked_[variable - stored_count] = true;
+    asks_what_acts_ |= row_of(variable).by_force != nullptr;
   }
-  double of(unsigned variable) const { return slope[variable - stored_count]; }
+
+  // With steps of h. tau_rate: the part of the rate of tau that the reading leaves out.
+  template <class SetTo>
+  void take(double x, double h, const Reading& reading, const SetTo& set_to, double tau_rate = 0) {
+    step(stencils[0], x, h, reading, set_to);
+    complete(tau_rate);
+  }
+
+  // With smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
+  //   all derivatives are exact;
+  //   the step is as small as rounding;
+  //   none of the first steps is possible: false.
+  template <class SetTo>
+  bool refine(double x, double scale, const Reading& reading, const SetTo& set_to) {
+    constexpr double finest = std::numeric_limits<double>::epsilon();
+    CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
+    bool done = false;
+    double part = first_part;
+    while (part > (done ? finest : finest_first) && !settle(scale)) {
+      done |= std::any_of(std::begin(stencils), std::end(stencils),
+                          [&](const Stencil& stencil) { return step(stencil, x, part * scale, reading, set_to); });
+      part *= 0.1;
+    }
+    complete(0);
+    return done;
+  }
+
+  double of(unsigned variable) const { return slope_[variable - stored_count]; }
+
+ private:
+  using Parts = std::array<double, sizeof(Acting) / sizeof(double)>;
+  static constexpr std::size_t computed = variable_count - stored_count, count = computed + std::tuple_size_v<Parts>;
+  // Of the computed variables, and behind them, where one needs it, of what acts.
+  using Numbers = std::array<double, count>;
 
   // By value: what a reading has computed belongs to its place.
   Numbers sample(Reading reading) const {
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)
-      if (asked[k]) numbers[k] = row_of(stored_count + k).read(reading);
-    if (!by_force) return numbers;
+      if (asked_[k]) numbers[k] = row_of(stored_count + k).read(reading);
+    if (!asks_what_acts_) return numbers;
     const auto parts = std::bit_cast<Parts>(acting_of(reading));
     std::copy(parts.begin(), parts.end(), numbers.begin() + computed);
     return numbers;
@@ -63,29 +90,30 @@ struct Quotients {
     return std::bit_cast<Acting>(parts);
   }
 
-  // Differences from the value at x itself, so that what does not depend on x has the derivative zero. `move_to` leads
-  // the reading to a place, if there is such a wheel.
-  template <class MoveTo>
-  bool take(const Stencil& stencil, double x, double h, const Reading& reading, const MoveTo& move_to) {
-    if (!move_to(x)) return false;
-    centre = sample(reading);
+  // Of several steps, each derivative is that with the least error. Differences from the value at x itself, so that
+  // what does not depend on x has the derivative zero.
+  template <class SetTo>
+  bool step(const Stencil& stencil, double x, double h, const Reading& reading, const SetTo& set_to) {
+    if (!set_to(x)) return false;
+    centre_ = sample(reading);
     Numbers quotient = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
-      if (!move_to(x + stencil.places[k] * h)) return false;
+      if (!set_to(x + stencil.places[k] * h)) return false;
       const Numbers at = sample(reading);
       for (std::size_t i = 0; i < count; ++i) {
-        quotient[i] += stencil.weights[k] * (at[i] - centre[i]) / h;
-        bend[i] += stencil.bend[k] * (at[i] - centre[i]) / h;
+        quotient[i] += stencil.weights[k] * (at[i] - centre_[i]) / h;
+        bend[i] += stencil.bend[k] * (at[i] - centre_[i]) / h;
       }
     }
     for (std::size_t i = 0; i < count; ++i) {
       const double size = std::fabs(quotient[i]);
-      const double rounding = std::numeric_limits<double>::epsilon() * (std::fabs(centre[i]) + std::fabs(x) * size) / h;
+      const double rounding =
+          std::numeric_limits<double>::epsilon() * (std::fabs(centre_[i]) + std::fabs(x) * size) / h;
       // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
-      if (exact[i] || likely >= error[i]) continue;
-      slope[i] = quotient[i];
-      error[i] = likely;
+      if (exact_[i] || likely >= error_[i]) continue;
+      slope_[i] = quotient[i];
+      error_[i] = likely;
     }
     return true;
   }
@@ -94,37 +122,23 @@ struct Quotients {
   bool settle(double scale) {
     CONSTANT(double, relative, 1e-11, "1", "error of a derivative that counts as exact");
     for (std::size_t i = 0; i < count; ++i)
-      exact[i] |= error[i] <= relative * (std::fabs(slope[i]) + std::fabs(centre[i]) / scale);
-    return std::all_of(exact.begin(), exact.end(), [](bool of) { return of; });
+      exact_[i] |= error_[i] <= relative * (std::fabs(slope_[i]) + std::fabs(centre_[i]) / scale);
+    return std::all_of(exact_.begin(), exact_.end(), [](bool of) { return of; });
   }
 
-  // Smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
-  //   all derivatives are exact;
-  //   the step is as small as rounding;
-  //   none of the first steps is possible: false.
-  template <class MoveTo>
-  bool refine(double x, double scale, const Reading& reading, const MoveTo& move_to) {
-    constexpr double finest = std::numeric_limits<double>::epsilon();
-    CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
-    bool done = false;
-    double part = first_part;
-    while (part > (done ? finest : finest_first) && !settle(scale)) {
-      done |= std::any_of(std::begin(stencils), std::end(stencils),
-                          [&](const Stencil& stencil) { return take(stencil, x, part * scale, reading, move_to); });
-      part *= 0.1;
-    }
-    return done;
-  }
-
-  // What is not linear in the forces follows from them. tau_rate: the part of the rate of tau that is left out.
-  void complete(double tau_rate = 0) {
-    slope[variable::tau - stored_count] += tau_rate;
-    const Acting acting = acting_in(centre);
-    Acting rate = acting_in(slope);
+  // What is not linear in the forces follows from them.
+  void complete(double tau_rate) {
+    slope_[variable::tau - stored_count] += tau_rate;
+    const Acting acting = acting_in(centre_);
+    Acting rate = acting_in(slope_);
     rate.axle.tau += tau_rate;
     for (unsigned k = 0; k < computed; ++k)
-      if (asked[k] && row_of(stored_count + k).by_force) slope[k] = row_of(stored_count + k).by_force(acting, rate);
+      if (asked_[k] && row_of(stored_count + k).by_force) slope_[k] = row_of(stored_count + k).by_force(acting, rate);
   }
+
+  bool asked_[computed] = {}, asks_what_acts_ = false;
+  Numbers centre_ = {}, slope_ = {}, error_;
+  std::array<bool, count> exact_ = {};  // smaller steps are of no use, whatever else is asked for
 };
 
 // In the initial state, or by a rate of the carrier, which jumps; an integer or boolean parameter moves nothing. The
@@ -138,17 +152,15 @@ bool take_by_parameter(const Wheel& w, unsigned parameter, Quotients& quotients)
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
   Record near = static_cast<const Record&>(w);
   read_state(w, near.run.y);
-  near.run.news = News::set;
+  near.run.pending = Pending::set;
   Reading reading(near, near.run.y);
-  const auto move_to = [&](double near_x) {
-    near.demand.value(parameter) = near_x;
+  const auto set_to = [&](double shifted_x) {
+    near.demand.value(parameter) = shifted_x;
     const bool exists = has_begun(near.run.phase) || prepare(near, Reporter());
     if (exists) reading = Reading(near, near.run.y);
     return exists;
   };
-  const bool done = quotients.refine(x, scale, reading, move_to);
-  quotients.complete();
-  return done;
+  return quotients.refine(x, scale, reading, set_to);
 }
 
 // The ground as it is at this instant, by the sign of N.
@@ -159,7 +171,7 @@ void keep_ground(Reading& reading) {
 
 // A brake that is not in use has the law that it would have in use; in model exchange that law waits for an event.
 void put_brake_in_use(Reading& reading) {
-  if (reading.setup->exchanged || reading.scene.friction.kind != WHEEL_FRICTIONLESS) return;
+  if (reading.setup->model_exchange || reading.scene.friction.kind != WHEEL_FRICTIONLESS) return;
   InForce used = reading.in_force;
   used.inputs.braked = true;
   decide_law(*reading.setup, reading.t, reading.y, used);
@@ -185,22 +197,23 @@ void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   WheelScene& scene = reading.scene;
   if (known == variable::M_brake) put_brake_in_use(reading);
   keep_ground(reading);
-  if (setup.exchanged)  // a small step must not vanish in the rounding of a large angle
+  if (setup.model_exchange)  // a small step must not vanish in the rounding of a large angle
     for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) reading.x[angle] = wheel_less_turns(reading.x[angle]);
-  const int in_x = setup.exchanged ? place_in_x(known) : -1;
+  const int in_x = setup.model_exchange ? place_in_x(known) : -1;
   double& place = in_x >= 0 ? reading.x[in_x] : *load_entry(scene.load, static_cast<int>(known - first_input));
   const double size = size_of(setup, scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, place);
-  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.contact() : setup.scene.contact;
+  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.scene.contact : setup.scene.contact;
   const bool begins = scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
-  const auto move_to = [&](double x) {
+  const auto set_to = [&](double x) {
     place = x;
-    if (setup.exchanged) wheel_reduced_state(reading.x, reading.y);
+    if (setup.model_exchange) wheel_reduced_state(reading.x, reading.y);
     if (begins) reading.y[WHEEL_CHI] = first_direction(scene, reading.y);
     return true;
   };
-  begins ? quotients.refine(place, size, reading, move_to)
-         : quotients.take(stencils[0], place, first_part * size, reading, move_to);
-  quotients.complete();
+  if (begins)
+    quotients.refine(place, size, reading, set_to);
+  else
+    quotients.take(place, first_part * size, reading, set_to);
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -234,15 +247,14 @@ void take_along_motion(const Wheel& w, Quotients& quotients) {
     law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};
   }
   Reading reading = start;
-  const auto move_to = [&](double t) {
+  const auto set_to = [&](double t) {
     for (int i = 0; i < formulation.states; ++i) reading.y[i] = start.y[i] + t * rates.y_dot[i];
     reading.scene.load = start.scene.load;
     for (int i = 0; i < inputs_count; ++i) *load_entry(reading.scene.load, i) += t * *load_entry(rate, i);
     return true;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  quotients.take(stencils[0], 0, pace > 0 ? first_part / pace : 1, reading, move_to);
-  quotients.complete(tau_rate);
+  quotients.take(0, pace > 0 ? first_part / pace : 1, reading, set_to, tau_rate);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace wheel {
 
 // (outputs) => their d/dt at the present instant, while the law and the sign of N last, under inputs that follow their
-// polynomials; after a step in which they varied they stay, but go on where a carrier is steered. Co-simulation alone.
+// polynomials; after a step in which they varied, those of the step. Co-simulation alone.
 void read_rates(const Wheel& wheel, Listed outputs, std::size_t count, double* out);
 
 // (known, seed, unknowns, `count` of them) => sums[k] += seed times the derivative of each unknown by the known. All

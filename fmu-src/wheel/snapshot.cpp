@@ -39,20 +39,17 @@ void visit(support::Archive& archive, Record& record) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
-  archive.count(run.news, 0, static_cast<int>(News::set));
-  archive.count(demand.slides, 0, 1);
+  archive.count(run.pending, 0, static_cast<int>(Pending::set));
+  archive.count(run.can_slide, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);
   for (double* x : {&now.road.s, &now.road.mu_max, &now.road.mu_slide}) archive.range(*x, 0, archive.greatest);
   archive.range(now.road.slope, 0, upright);
   archive.range(now.road.slope_direction, -largest_angle, largest_angle);
-  WheelFriction law = now.law();
-  WheelContactMode contact = now.contact();
+  WheelFriction& law = now.scene.friction;
   archive.count(law.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive.range(law.sigma, -1, 1);
-  archive.count(contact, WHEEL_GRIPS, WHEEL_SLIDES);
-  now.set_law(law);
-  now.set_contact(contact);
+  archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
   archive.number(now.inputs.origin);
   for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
@@ -60,7 +57,7 @@ void visit(support::Archive& archive, Record& record) {
   demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(run.y, max_states);
   for (int i = 0; i < event_count; ++i) {
     archive.count(now.below[i], 0, 1);
-    archive.count(run.observed[i], 0, 1);
+    archive.count(run.logged[i], 0, 1);
   }
   archive.tally(run.transitions);
   for (long long* count : run.counted.all()) archive.tally(*count);
@@ -74,14 +71,13 @@ bool complete(Record& record) {
   const bool ended = run.ended_by != Event::none;
   if (ended ? !event_row(run.ended_by).ending : run.phase == Phase::ended) return false;
   if (!has_state(run.phase)) return true;
-  if (!check_values(demand, Reporter(), false)) return false;
-  setup = setup_of(demand);
+  if (!check_values(demand, run.can_slide, Moment::during_run, Reporter())) return false;
+  setup = setup_of(demand, run.can_slide);
   run.y_time = run.t;
-  if (setup.exchanged) wheel_reduced_state(run.x, run.y);
+  if (setup.model_exchange) wheel_reduced_state(run.x, run.y);
   InForce& now = run.in_force;
   now.take_over(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c);
-  const WheelFriction& law = now.law();
-  now.set_law({law.kind, law.sigma, law.kind == WHEEL_REGULARIZED ? setup.omega_s : 0});
+  now.scene.friction.omega_s = now.law().kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
   return setup.sliding || !now.slides();
 }
 

@@ -57,9 +57,7 @@ Reading::Reading(const Record& r, const double* y_reached)
     : setup(&r.setup), t(r.run.t), in_force(r.run.in_force), counters(r.run.counted), transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
-  // Where inputs stay, a carrier turns on as in the step until the next one begins.
-  const bool acts_on = r.run.news == News::none || (r.run.news == News::stays && setup->steered());
-  if (!acts_on) enforce(*setup, r.demand, t, y, in_force);
+  if (r.run.pending == Pending::set) enforce(*setup, r.demand, t, y, in_force);
   scene = in_force.scene_at(t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
@@ -93,9 +91,9 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
   const double taken = value / factorial[order];
-  if (asked == taken && run.news != News::stays) return;  // what is set to where it stays counts as set
+  if (asked == taken && run.pending != Pending::held_inputs) return;  // what is set to where it is held counts as set
   asked = taken;
-  run.news = News::set;
+  run.pending = Pending::set;
   if (w.demand.kind == Kind::model_exchange && is_running(run.phase)) act_at_once(w);
 }
 
@@ -105,33 +103,32 @@ bool prepare(Record& r, const Reporter& reporter) {
   Run& run = r.run;
   run = Run();
   run.phase = Phase::faulty;
-  r.demand.slides = r.demand.parameters[variable::mu_slide] > 0;
-  if (!check_values(r.demand, reporter, true)) return false;
-  r.setup = setup_of(r.demand);
-  std::copy_n(r.setup.start, max_states, run.y);
+  run.can_slide = r.demand.parameters[variable::mu_slide] > 0;
+  if (!check_values(r.demand, run.can_slide, Moment::at_start, reporter)) return false;
+  r.setup = setup_of(r.demand, run.can_slide);
+  std::copy_n(r.setup.initial_state, max_states, run.y);
   run.in_force = InForce(r.setup);
-  if (r.setup.steered()) set_guide_rates(r.setup, r.demand, r.setup.scene, true, run.y);
+  if (r.setup.steered()) start_guide_rates(r.setup, r.demand, r.setup.scene, run.y);
   enforce(r.setup, r.demand, 0, run.y, run.in_force);
-  if (r.setup.exchanged) wheel_euler_states(run.y, r.demand.parameters[variable::psi_dot_start], run.x);
+  if (r.setup.model_exchange) wheel_euler_states(run.y, r.demand.parameters[variable::psi_dot_start], run.x);
   Reading start(r, run.y);
   if (check_start(r, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
 }
 
 bool prepare_once(Wheel& w) {
-  const Reporter nobody;
-  const bool faulty = w.run.phase == Phase::faulty;
-  return (w.run.phase != Phase::initializing && !faulty) || prepare(w, faulty ? nobody : w.reporter);
+  if (w.run.phase == Phase::faulty) return false;
+  return w.run.phase != Phase::initializing || prepare(w, w.reporter);
 }
 
-bool start(Wheel& w) {
-  const bool exchanged = w.demand.kind == Kind::model_exchange;
-  const bool sound = prepare(w, w.reporter) && (!exchanged || starts_inside(w));
+bool end_initialization(Wheel& w) {
+  const bool exchange = w.demand.kind == Kind::model_exchange;
+  const bool sound = prepare(w, w.reporter) && (!exchange || starts_inside(w));
   if (sound) {
     warn_of_paper_start(w);
     log_changes(w, InForce(w.setup));
   }
-  w.run.phase = !sound ? Phase::without_start : exchanged ? Phase::event_mode : Phase::at_start;
+  w.run.phase = !sound ? Phase::without_start : exchange ? Phase::event_mode : Phase::at_start;
   return sound;
 }
 

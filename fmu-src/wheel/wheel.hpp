@@ -2,11 +2,11 @@
 // as far as it is known; and its run from the parameters to the end. The run has a clock, zero at the start, so that a
 // start time of 1e9 s costs no digits.
 //
-// A function changes nothing of a wheel that is passed as const but values that are kept to save work: the polynomial
-// of a step, the half read last, the load of the instant asked for last. No two threads may read one wheel. Of one that
-// is passed as a Record it changes no solution, and perhaps all of any other.
+// Of a wheel that is passed as const, a function changes only what is kept to save work: the polynomial of a step, the
+// piece of a track and the half of an orbit that were read last. So no two threads may read one wheel. A function that
+// takes a Record changes that, but never the solution.
 //
-// The other files of this folder, each below those that it needs:
+// The other headers of this folder, each below those that it includes:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
 //   setup, run                    what follows from the parameters; what is in force, and how far the run has come
 //   law, events                   how friction and contact are decided; the table of what can happen
@@ -34,8 +34,8 @@ struct Record {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
-// What can be read at one instant. Positions and velocities, and accelerations and reactions, are computed when they
-// are first asked for and kept; nothing is computed for an output that nobody reads. Fixed axes unless said.
+// All that can be read at one instant. Positions and velocities, and accelerations and reactions, are computed when
+// they are first asked for and kept; nothing is computed for an output that nobody reads. Fixed axes unless said.
 struct Reading {
   // (y: the state at the instant reached) => the reading there, where what was set since the last step is in force at
   // once. The record stays where it is as long as the reading is in use.
@@ -54,8 +54,8 @@ struct Reading {
   const WheelKinematics& kinematics() {
     if (kinematics_) return *kinematics_;
     WheelKinematics& k = kinematics_.emplace();
-    setup->exchanged ? wheel_euler_kinematics(&scene.wheel, x, &k)
-                     : formulation_of(*setup, scene.contact).kinematics(&scene.wheel, y, &k);
+    setup->model_exchange ? wheel_euler_kinematics(&scene.wheel, x, &k)
+                          : formulation_of(*setup, scene.contact).kinematics(&scene.wheel, y, &k);
     return k;
   }
   const WheelDynamics& dynamics() {
@@ -65,16 +65,9 @@ struct Reading {
   // X_C and Y_C as the state counts X_O and Y_O.
   WheelContact contact() { return wheel_contact(&scene.wheel, &kinematics()); }
 
+ private:
   std::optional<WheelKinematics> kinematics_ = {};
   std::optional<WheelDynamics> dynamics_ = {};
-};
-
-// What shapes the motion on an orbit: the parameters without heading, roll angle and place of the start, which are zero
-// here, and the tolerance.
-struct Shape {
-  double parameters[first_input] = {}, tolerance = 0;
-  bool slides = false;
-  bool operator==(const Shape&) const = default;
 };
 
 struct Wheel : Record {
@@ -84,12 +77,12 @@ struct Wheel : Record {
   // The solution: steps of the solver, or the orbit of a wheel that is unfolded.
   solver::Solver solver;
   orbit::Orbit orbit;
-  Shape orbit_shape;      // for which `orbit` was built; it is entered where it is the present run's
-  long long endings = 0;  // of all runs since the last reset, logged or not, those that a state led back from included
+  long long endings = 0;  // of all runs since the last reset, logged or not, even if the caller went back before them
 };
 
-// (variable) => whether it is a rate of a carrier, and one that does not turn
+// Whether the variable is a rate of a wheel carrier.
 inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
+// Whether it is one of a wheel that runs without a carrier that turns.
 inline bool is_idle(const Record& record, unsigned variable) {
   return is_guide_rate(variable) && is_running(record.run.phase) && !record.setup.steered();
 }
@@ -114,11 +107,11 @@ void set(Wheel& wheel, unsigned variable, double value, int order = 0);
 void begin_initialization(Wheel& wheel);
 // The initial state from the present parameters, true if it exists. Else one message per fault.
 bool prepare(Record& record, const Reporter& reporter);
-// Before the end of the initialization: `prepare` where it has not been done, with each message once. True without it
-// where no initial state is due.
+// `prepare` where the parameters have changed since it was last done, so that each message comes once. False as long as
+// they are faulty; true where no initial state is due.
 bool prepare_once(Wheel& wheel);
-// The end of initialization: false if there is no initial state.
-bool start(Wheel& wheel);
+// The run can begin; false if there is no initial state.
+bool end_initialization(Wheel& wheel);
 // The run ends at the instant reached, by an event.
 void end_run(Wheel& wheel, Event event);
 // The caller ends the run.

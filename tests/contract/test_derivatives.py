@@ -42,28 +42,27 @@ def test_output_derivatives_are_those_of_the_motion(wheel, scene):
         w.back(blob)
 
 
-@pytest.mark.parametrize("scene", ["steered", "steered, slides"])
-def test_the_rates_of_a_carriers_course_count_until_something_is_set(wheel, scene):
-    w = wheel().start(tolerance=1e-12, **SCENES[scene]).give(TURN).to(0.1)
-    left, right = rates(w), rates(w.give(TURN, since=0.1))
-    within(np.max(np.abs(left - right) / (1 + np.abs(right))), 1e-9, "rates before and after it is given on, relative")
-    beyond(np.max(np.abs(left - rates(w.put(**dict.fromkeys(TURN, 0.0))))), 1.0, "rates where the carrier stops")
+PUSH = {"F_Y": (1.0, 5.0), "M_2": (0.5, -3.0)}
+
+
+@pytest.mark.parametrize(
+    ("start", "inputs"), [(SCENES["steered"], TURN), (SCENES["steered, slides"], TURN), (GENERAL, PUSH)]
+)
+def test_the_rates_at_the_end_of_a_step_are_those_of_its_inputs_until_something_is_set(wheel, start, inputs):
+    w = wheel().start(tolerance=1e-12, **start).give(inputs).to(0.1)
+    left, arrived = rates(w), dict(zip(inputs, w.get(*inputs), strict=True))
+    held, right = rates(w.put(**arrived)), rates(w.give(inputs, since=0.1))
+    within(
+        np.max(np.abs(left - right) / (1 + np.abs(right))), 1e-9, "rates before and after they are given on, relative"
+    )
+    beyond(np.max(np.abs(left - held)), 1.0, "rates where the inputs stay, apart")
 
 
 @pytest.mark.parametrize(("brake", "rate"), [((1.0, -3.0, 1.0), 0.0), ((3.0, -3.0, 1.0), 1.0)])
 def test_the_capacity_of_a_brake_rests_while_its_polynomial_is_below_zero(wheel, brake, rate):
-    """On a carrier, where inputs go on after their step; at 2 s both polynomials rise by 1 N m/s."""
+    """At 2 s both polynomials rise by 1 N m/s."""
     w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5, phi_dot_start=-20.0).give({"M_brake": brake}).by(2.0)
     assert w.rates(["tau_brake"])() == pytest.approx([rate])
-
-
-def test_the_slope_of_a_load_ends_with_its_step(wheel):
-    """A load has no course as a carrier has: it stays where it arrived, with the rates of one that is set there."""
-    w = wheel().start(**GENERAL).give({"F_Y": (1.0, 5.0), "M_2": (0.5, -3.0)}).to(0.1)
-    left, (F_Y, M_2) = rates(w), w.get("F_Y", "M_2")
-    assert (left == rates(w.put(F_Y=F_Y, M_2=M_2))).all()
-    sloped = rates(w.give({"F_Y": (F_Y, 5.0), "M_2": (M_2, -3.0)}))
-    beyond(np.max(np.abs(left - sloped)), 1.0, "rates under a slope that goes on, apart")
 
 
 @pytest.mark.parametrize("formulation", [2, 3])

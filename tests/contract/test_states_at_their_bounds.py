@@ -34,7 +34,7 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
     found += [("s, mu_max, mu_slide", 3, 0.0, MOST), ("slope", 1, 0.0, pi / 2), ("slope_direction", 1, -1e12, 1e12)]
     found += [("law", 1, 0, 4), ("sigma", 1, -1.0, 1.0), ("contact", 1, 0, 1)]
     found += [("origin", 1, -MOST, MOST), ("polynomials", 36, -MOST, MOST), ("t, last change", 2, -MOST, MOST)]
-    found += [("grip due", 1, 0.0, inf), ("y", 12, -MOST, MOST), ("below, observed", 2 * EVENTS, 0, 1)]
+    found += [("grip due", 1, 0.0, inf), ("y", 10, -MOST, MOST), ("below, observed", 2 * EVENTS, 0, 1)]
     found += [("transitions", 1, 0, COUNT), ("counted", 5, 0, COUNT)]
     if phase != STEPPING:
         return found
@@ -64,7 +64,7 @@ AT_START, STEPPING, UNFOLDED, ENDED, CLOSED = 4, 5, 6, 9, 10
 STATES: dict[str, tuple[Values, float, str, int, int, int, int]] = {
     "DOP853": ({"s": 0.02, **GENERAL}, 0.7, "runge_kutta", 8, 3, 13, STEPPING),
     "DOP853, a wheel that can slide": ({**ROAD, "s": 0.02}, 0.3, "runge_kutta", 8, 4, 13, STEPPING),
-    "collocation": ({**ROAD, **THROWN, "s": 0.02}, 0.1, "collocation", 12, 5, 6, STEPPING),
+    "collocation": ({**ROAD, **THROWN, "s": 0.02}, 0.1, "collocation", 10, 5, 6, STEPPING),
     "Adams": (KINDS["adams"], 0.7, "cvode", 8, 3, 1, STEPPING),
     "multibody, BDF": (KINDS["multibody, bdf"], 0.7, "cvode", 8, 3, 1, STEPPING),
     "unfolded": ({}, 0.7, "", 8, 2, 0, UNFOLDED),

@@ -94,8 +94,8 @@ def test_accelerations_reactions_and_the_carriers_moments_are_those_of_24(law: i
             beyond(other, 1e-9, "distance with another inertia and coefficient")
 
 
-def jump(scene: eq.Scene, psi_dot: float, theta_dot: float, motion: eq.Motion) -> None:
-    eq.LIBRARY.wheel_jump(byref(scene), c_double(0.0), c_double(psi_dot), c_double(theta_dot), byref(motion))
+def jump(scene: eq.Scene, psi_dot: float, theta_dot: float, motion: eq.Motion, hold: float = 0.0) -> None:
+    eq.LIBRARY.wheel_jump(byref(scene), c_double(hold), c_double(psi_dot), c_double(theta_dot), byref(motion))
 
 
 def ramp_followed(scene: eq.Scene, before: eq.Motion, psi_dot: float, theta_dot: float) -> list[float]:
@@ -176,6 +176,57 @@ def test_a_jump_under_a_narrow_law_is_that_under_the_exact_one(theta, phi_dot, t
         found.append([motion.phi_dot, motion.slip_x, motion.slip_y])
     within(absolute_error(*found), 3e-8, "apart, SI")
     beyond(abs(found[0][0] - phi_dot), 1e-3, "change of phi_dot by the jump, rad/s")
+
+
+def braked_over_a_millisecond(free: float, hold: float, J: float, omega_s: float) -> float:
+    """omega_z of a wheel that stood, behind a ramp of 1 ms that alone would turn it by `free`."""
+
+    def rate(_: float, spin: np.ndarray) -> np.ndarray:
+        return 1e3 * free - hold / J * np.tanh(spin / omega_s)
+
+    return solve_ivp(rate, (0, 1e-3), [0.0], method="Radau", rtol=1e-9, atol=1e-9 * omega_s).y[0, -1]
+
+
+@pytest.mark.parametrize("part", [0.9, 1.1], ids=["its brake holds", "its brake yields"])
+def test_a_jump_of_a_standing_wheel_under_a_narrow_law_tends_to_that_of_a_held_one(part: float) -> None:
+    """Where the brake would hold it over a ramp of 1 ms it stays. In a wide law no brake stops a spin so soon."""
+    theta, psi_dot, wheel = 1.2, 0.02, eq.paper_wheel(s=0.0)
+    J = wheel.J_z + wheel.m * (wheel.r_0 + wheel.r * np.sin(theta)) ** 2
+
+    def turned(hold: float, **law: float) -> float:
+        scene = eq.scene(eq.paper_wheel(s=0.0), brake=hold, **law)
+        scene.guided = 1
+        motion = eq.Motion(0.3, theta)
+        jump(scene, psi_dot, 0.0, motion, hold)
+        return motion.phi_dot + psi_dot * np.cos(theta)
+
+    free = turned(0.0, kind=eq.ROLLING, sigma=1)
+    hold = 1e3 * abs(free) * J / part
+    exact = turned(hold, kind=eq.HELD)
+    assert (exact == 0) == (part < 1)
+    for omega_s in abs(free) * np.array([1e-3, 1e-6]):
+        within(abs(turned(hold, kind=eq.REGULARIZED, omega_s=omega_s) - exact), 1e-15, "spin apart, rad/s")
+        if part < 1:
+            braked = braked_over_a_millisecond(free, hold, J, omega_s)
+            within(abs(braked - exact), 2 * omega_s, "spin behind the ramp itself, rad/s")
+    wide = turned(hold, kind=eq.REGULARIZED, omega_s=10 * abs(free))
+    braked = braked_over_a_millisecond(free, hold, J, 10 * abs(free))
+    within(abs(wide - braked) / abs(free), 0.1, "spin apart in a wide law, over that of the jump")
+    beyond(abs(braked) / abs(free), 0.9, "spin behind the ramp in a wide law, over that of the jump")
+
+
+@pytest.mark.parametrize("hold", [10.0, 1e5])
+def test_a_jump_of_a_standing_wheel_that_slides_is_alike_in_a_narrow_law_and_held(hold: float) -> None:
+    """Released by the friction of its slip, or not."""
+    found = []
+    for law in ({"kind": eq.HELD}, {"kind": eq.REGULARIZED, "omega_s": 1e-10}):
+        scene = eq.scene(eq.paper_wheel(s=0.01), brake=hold, **law)
+        scene.guided, scene.contact, scene.mu_slide = 1, 1, 0.4
+        motion = eq.Motion(0.3, 1.2, 0, 0, 0, 0, 0, 0, 0.5, -0.3)
+        jump(scene, 0.0, 1.5, motion, hold)
+        found.append([motion.phi_dot, motion.slip_x, motion.slip_y])
+    within(absolute_error(*found), 1e-8, "apart, SI")
+    assert (abs(found[0][0]) > 1e-3) == (hold == 10.0)
 
 
 @pytest.mark.parametrize("push", [0.0, 0.2, -0.2])

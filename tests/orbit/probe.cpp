@@ -19,11 +19,13 @@ struct Probe {
   wheel::Wheel wheel{reporter, wheel::Kind::co_simulation};
   solver::Solver& solver = wheel.solver;
   orbit::Orbit& orbit = wheel.orbit;
+  double builds = 0;
 };
 
 double force(const Probe& probe, const double* y) {
+  const WheelScene scene = probe.wheel.run.in_force.scene_at(0);
   double y_dot[8];
-  return wheel_reduced.derivative(&probe.wheel.run.in_force.scene_at(0), y, y_dot);
+  return wheel_reduced.derivative(&scene, y, y_dot);
 }
 
 // What Python adds to the rate of the state at `place`, or beyond the last to what is watched for an event: no wheel
@@ -63,8 +65,8 @@ PUBLIC Probe* probe_make(const unsigned* references, const double* values, int c
   wheel::Wheel& wheel = probe->wheel;
   for (int i = 0; i < count; ++i) wheel.demand.parameters[references[i]] = values[i];
   wheel.demand.tolerance = tolerance;
-  wheel.setup = wheel::setup_of(wheel.demand);
-  wheel::enforce(wheel.setup, wheel.demand, 0, wheel.setup.start, wheel.run.in_force);
+  wheel.setup = wheel::setup_of(wheel.demand, false);
+  wheel::enforce(wheel.setup, wheel.demand, 0, wheel.setup.initial_state, wheel.run.in_force);
   return probe;
 }
 
@@ -72,15 +74,15 @@ PUBLIC void probe_free(Probe* probe) { delete probe; }
 
 // Place in KINDS of unfolded.py. `by`: a disturbance, or null.
 PUBLIC int probe_build(Probe* probe, int at, double so_much, Added by) {
-  const wheel::InForce at_start = probe->wheel.run.in_force;
-  solver::Problem problem = wheel::problem_of(probe->wheel);
+  wheel::Record ahead = static_cast<const wheel::Record&>(probe->wheel);
+  solver::Problem problem = wheel::problem_of(ahead);
   place = at, size = so_much, added = by;
   if (added) disturb(problem);
   const wheel::Setup& setup = probe->wheel.setup;
-  const orbit::FreeMotion motion = {problem, setup.tolerance, wheel::follow_on_orbit, setup.start, solver::never};
-  const bool entered = probe->orbit.enter(motion, false, probe->solver);
-  probe->wheel.run.in_force = at_start;
-  if (!entered) return 0;
+  const double build = ++probe->builds;  // each is another motion
+  const orbit::FreeMotion motion = {problem,       setup.tolerance, wheel::follow_on_orbit, setup.initial_state,
+                                    solver::never, {&build, 1}};
+  if (!probe->orbit.enter(motion, probe->solver)) return 0;
   const orbit::Course& course = probe->orbit.course();
   return course.ending ? 3 : std::holds_alternative<orbit::Circle>(course.path) ? 2 : 1;
 }
@@ -102,9 +104,10 @@ PUBLIC void probe_read(Probe* probe, const double* t, int count, double* y, doub
 PUBLIC long long probe_run(Probe* probe, unsigned reference, double value, double t, double* y) {
   wheel::Wheel& wheel = probe->wheel;
   wheel.demand.parameters[reference] = value;
-  const bool sound = wheel::start(wheel) &&
-                     probe->solver.start(wheel::problem_of(wheel), solver::Method::runge_kutta, 0, wheel.setup.start);
-  if (!sound || wheel::advance(wheel, t) != solver::Outcome::stepped) return -1;
+  const bool sound =
+      wheel::end_initialization(wheel) &&
+      probe->solver.start(wheel::problem_of(wheel), solver::Method::runge_kutta, 0, wheel.setup.initial_state);
+  if (!sound || wheel::advance(wheel, t) != wheel::Progress::done) return -1;
   wheel::update_state(wheel);
   std::copy_n(wheel.run.y, 8, y);
   return probe->solver.counters().steps;
