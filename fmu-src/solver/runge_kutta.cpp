@@ -22,6 +22,7 @@ constexpr int width = 8;  // of a problem's state
 
 CONSTANT(double, share_of_tolerance, 0.03, "1",
          "error of a step over that of the solution, tuned on the wheel's scenes");
+CONSTANT(double, share_in_bend, 0.25, "of the usual", "where a law bends: the dense output is less exact there");
 CONSTANT(int, most_attempts, 40, "steps", "a step that is refused 40 times has fallen by 1e-28");
 CONSTANT(double, reserve, 0.1, "of the size", "a step is shorter than fits its error, so that few are refused");
 CONSTANT(double, stretch, 0.01, "of the step", "by which it grows to end at the stop: no tiny step, 8 % more error");
@@ -142,7 +143,8 @@ struct RungeKutta::Work {
     else
       engine.end_margin_ = evaluate(0, step.start, step.y_start);
     if (std::isnan(engine.end_margin_)) return "the rates of the states are not finite";
-    problem.weights(problem.owner, share_of_tolerance * problem.share, step.y_start, weights);
+    const double share = problem.steep ? share_in_bend * problem.share : problem.share;
+    problem.weights(problem.owner, share_of_tolerance * share, step.y_start, weights);
     double& liked = engine.liked_;
     if (liked == 0) liked = guess_size();
     const double in_bend = problem.steep ? longest_in_bend(*problem.steep) : INFINITY;

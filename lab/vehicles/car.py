@@ -22,11 +22,16 @@ RECORD = {"chassis": COMPARED, "driver": ("delta", "M_drive", "M_brake"), **dict
 LEAST = 0.01  # of a range, where errors are relative to it
 
 
-def build_all(folder: Path = BUILT) -> Fmus:
+def build_all() -> Fmus:
     """Every FMU of the examples by name, and the wheel; their packages are beside them (examples/vehicles)."""
     wheel = build_folder() / "wheel.fmu"
-    building.build("the examples", folder, EXAMPLES, [f"-DPython3_EXECUTABLE={sys.executable}", f"-DWHEEL={wheel}"])
-    return {fmu.stem: fmu for fmu in folder.glob("*.fmu")} | {"wheel": wheel}
+    building.build("the examples", BUILT, EXAMPLES, [f"-DPython3_EXECUTABLE={sys.executable}", f"-DWHEEL={wheel}"])
+    return fmus_in(BUILT)
+
+
+def fmus_in(folder: Path) -> Fmus:
+    """Those that were built there, and the wheel."""
+    return {fmu.stem: fmu for fmu in folder.glob("*.fmu")} | {"wheel": build_folder() / "wheel.fmu"}
 
 
 def drive(

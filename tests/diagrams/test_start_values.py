@@ -11,9 +11,11 @@ import pytest
 from fmpy import simulate_fmu
 from scipy.integrate import quad
 from support.bounds import EPSILON, beyond, within
+from support.printed import COMMANDS
 from support.refusals import REFUSALS
 
 from wheelfmu.commands import run
+from wheelfmu.diagrams import paper, races, style
 from wheelfmu.fmu import start_values
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.fmu.presets import doubt, moments
@@ -58,6 +60,25 @@ def test_a_start_that_the_wheel_refuses_is_refused_in_its_own_words(fmu_path, tm
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     said = [line.removeprefix("[ERROR] ") for line in done.stdout.splitlines() if line.startswith("[ERROR] ")]
     assert said == words and (done.returncode == 0) is (words == [])
+
+
+@pytest.mark.parametrize("words", [words for name, *words in COMMANDS if name == "run"], ids=" ".join)
+def test_every_run_that_a_document_prints_simulates_and_draws(fmu_path, tmp_path, monkeypatch, words):
+    """By FMPy, with its estimates of the error and its first picture, which has the panels of all others."""
+    values = start_values.values(words)
+    table = tmp_path / "friction.csv"
+    command = run.simulation("--output-file", str(table), *start_values.command(values))
+    subprocess.run(command, cwd=fmu_path.parent, check=True, capture_output=True)
+    assert run.moves(table)
+    monkeypatch.setattr(races, "ROOT", fmu_path.parent)
+    races.main(tmp_path, {**values})
+    assert all(" computing time " in (tmp_path / f"{scene}.error").read_text() for scene in run.SCENES)
+    style.use_style()
+    monkeypatch.setattr(style, "save", style.save_png)
+    first, *_ = paper.pictures(paper.scenes_of(tmp_path, values, fmu_path), tmp_path / "drawn")
+    paper.draw(*first)
+    (drawn,) = tmp_path.glob("drawn/*diagrams.png")
+    assert drawn.stat().st_size > 1e5
 
 
 @pytest.mark.parametrize("near", [near for *_, near in REFUSALS], ids=str)

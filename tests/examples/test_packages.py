@@ -1,13 +1,8 @@
-"""The C++ examples, copied into an empty folder and built by the recipe of their page; their packages, run by FMPy from
-their own start at their own step. SI units.
+"""The packages of the C++ examples, built by the recipe of their page, run by FMPy from their own start at their own
+step. SI units.
 """
 
-import os
-import re
 import runpy
-import shlex
-import subprocess
-import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,22 +13,11 @@ from fmpy.ssp import simulation
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from support.bounds import beyond, within
 
-from wheelfmu.fmu.paths import ROOT, build_folder
+from wheelfmu.fmu.paths import ROOT
 
 VEHICLES = ROOT / "examples" / "vehicles"
 SYSTEMS = {"car": "car/car.toml", "quarter_car": "quarter_car/quarter_car.toml"}
 OUT_AND_BACK = (47.5, 3 * np.tanh(1.75)), (104.0, 0.0)  # X and Y of the path
-
-
-@pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    (recipe,) = re.findall(r"```\n(project=.*?)```", (VEHICLES / "README.md").read_text(encoding="utf-8"), re.DOTALL)
-    folder = tmp_path_factory.mktemp("copy")
-    recipe = recipe.replace("/path/to/this/checkout", str(ROOT)).replace("$project/dist/wheel.fmu", "$wheel")
-    commands = f"wheel={shlex.quote(str(build_folder() / 'wheel.fmu'))}\n{recipe}"
-    active = os.environ | {"VIRTUAL_ENV": sys.prefix}
-    subprocess.run(["bash", "-e", "-c", commands], cwd=folder, env=active, check=True, capture_output=True)
-    return folder / "build"
 
 
 def run(package: Path, halves: int = 1, **how: object) -> np.ndarray:
@@ -47,9 +31,9 @@ def run(package: Path, halves: int = 1, **how: object) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_a_package_is_valid_and_binds_the_start_values_of_its_system_at_the_components(built: Path, name: str):
+def test_a_package_is_valid_and_binds_the_start_values_of_its_system_at_the_components(vehicles: Path, name: str):
     package, system = (
-        built / f"{name}.ssp",
+        vehicles / f"{name}.ssp",
         runpy.run_path(str(VEHICLES / "package.py"))["read"](VEHICLES / SYSTEMS[name]),
     )
     structure = read_ssd(str(package), validate=True)
@@ -63,25 +47,25 @@ def test_a_package_is_valid_and_binds_the_start_values_of_its_system_at_the_comp
     assert {p.name: p.value for p in read_ssv(str(package), "resources/start.ssv").parameters} == every
 
 
-def test_the_cars_package_changes_lanes_in_fmpy_from_its_own_start_at_its_own_step(built: Path):
+def test_the_cars_package_changes_lanes_in_fmpy_from_its_own_start_at_its_own_step(vehicles: Path):
     """All wheels on the road, loaded after the first step, the rear point on its path, and an error of order 1;
     partner: a driver without a path."""
-    runs = [run(built / "car.ssp", halves) for halves in (1, 2, 4)]
+    runs = [run(vehicles / "car.ssp", halves) for halves in (1, 2, 4)]
     assert all(min(rows[f"{wheel}.lambda_3"][1:].min() for wheel in ("fl", "fr", "rl", "rr")) > 2000 for rows in runs)
     for X, Y in OUT_AND_BACK:
         within(abs(np.interp(X, runs[0]["chassis.X_R"], runs[0]["chassis.Y_R"]) - Y), 0.02, "off the lane, m")
     coarse, fine = (np.abs(rows["chassis.Y"] - runs[2]["chassis.Y"]).max() for rows in runs[:2])
     within(coarse, 0.05, "off a run with a quarter of the step, m")
     within(fine / coarse, 0.6, "error at half the step, over that at the step")
-    start = read_ssv(str(built / "car.ssp"), "resources/start.ssv")
+    start = read_ssv(str(vehicles / "car.ssp"), "resources/start.ssv")
     start.parameters = [p for p in start.parameters if p.name != "driver.path"]
-    straight = run(built / "car.ssp", parameter_set=start)
+    straight = run(vehicles / "car.ssp", parameter_set=start)
     beyond(abs(np.interp(47.5, straight["chassis.X_R"], straight["chassis.Y_R"]) - 3), 2, "the same on no path, m")
 
 
-def test_the_quarter_cars_package_accelerates_in_fmpy_as_newton_and_euler_say(built: Path):
+def test_the_quarter_cars_package_accelerates_in_fmpy_as_newton_and_euler_say(vehicles: Path):
     m, m_t = 320.0, 320.0 + 1.8 / 0.35**2
-    rows = run(built / "quarter_car.ssp")
+    rows = run(vehicles / "quarter_car.ssp")
     late = rows["time"] > 2.5
     found = np.polyfit(rows["time"][late], rows["quarter_car.X_B_dot"][late], 1)[0]
     for torque, check in ((150.0, within), (151.5, beyond)):
@@ -89,8 +73,8 @@ def test_the_quarter_cars_package_accelerates_in_fmpy_as_newton_and_euler_say(bu
     within(abs(rows["quarter_car.Z_B"] - 0.70285).max(), 1e-9, "height of the mass, which starts at rest, m")
 
 
-def test_a_package_without_its_start_values_is_another_system(built: Path):
-    rows = run(built / "quarter_car.ssp", parameter_set=None, stop_time=0.3)
+def test_a_package_without_its_start_values_is_another_system(vehicles: Path):
+    rows = run(vehicles / "quarter_car.ssp", parameter_set=None, stop_time=0.3)
     beyond(abs(rows["wheel.theta"] - np.pi / 2).max(), 0.1, "off upright, rad")
 
 

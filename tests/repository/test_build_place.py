@@ -4,6 +4,7 @@ cargo and Eigen of any age that serves. No paper equation."""
 import os
 import shutil
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,26 @@ def test_eigen_is_taken_from_3_4_on(tmp_path: Path, version: str, taken: bool) -
     done = configured(tmp_path / "place", f"find_package(Eigen3{lines}", f"-DEigen3_DIR={tmp_path}")
     assert (done.returncode == 0) == taken, done.stderr
     assert taken or f"has {version}." in " ".join(done.stderr.split())
+
+
+def makers(build: Path) -> dict[str, set[str]]:
+    """By file that a rule of the build makes: the targets that have the rule."""
+    found: dict[str, set[str]] = {}
+    for rules in build.glob("CMakeFiles/*.dir/build.make"):
+        lines = rules.read_text(encoding="utf-8").splitlines()
+        for line, recipe in pairwise(lines):
+            if ": " in line and recipe.startswith("\t"):
+                found.setdefault(line.split(": ")[0], set()).add(rules.parent.stem)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("source", "made"), [(ROOT, "wheel.fmu"), (ROOT / "examples" / "vehicles", "car.ssp")], ids=["wheel", "examples"]
+)
+def test_one_target_makes_each_file(tmp_path: Path, source: Path, made: str, fmu_path: Path) -> None:
+    """`make -j` would make one twice at once where two targets have its rule. Where one waits for the other, CMake
+    leaves the rule to one."""
+    words = ["cmake", "-G", "Unix Makefiles", "-S", source, "-B", tmp_path, "-D", f"WHEEL={fmu_path}"]
+    subprocess.run(words, check=True, capture_output=True)
+    files = makers(tmp_path)
+    assert made in files and {file: by for file, by in files.items() if len(by) > 1} == {}

@@ -96,8 +96,9 @@ MADE_UP = re.compile(r"…|\b(?:NAME|FILE|FOLDER|PRESET|SECONDS|results|upright|
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 def test_every_printed_command_takes_its_arguments(command: tuple[str, ...]) -> None:
-    """Every ./scripts/run is run as well (test_hostile_place.py), so are FMPy's commands and the programs of the pages
-    (test_readme.py), studies and vehicles (lab). The others are those by which this project is built and tested."""
+    """Every ./scripts/run is run as well (tests/diagrams/test_start_values.py), so are FMPy's commands and the programs
+    of the pages (test_readme.py), studies and vehicles (lab). The others are those by which this project is built and
+    tested."""
     skip_deleted(command[0] not in MODULES or any(name in command for name in ABSENT))
     assert MADE_UP.search(" ".join(command)) or accepted(*command)
 

@@ -8,6 +8,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from support.bounds import EPSILON, within
 from support.playing import play
 
@@ -107,3 +108,40 @@ def test_a_brake_that_gives_way_inside_one_step_lets_the_wheel_turn_at_its_insta
     assert w.get("phi")[0] != 0
     inputs["M_brake"][0] = 6.1  # the partner: it sinks to 2.1
     assert held.give(inputs).to(STEP).get("phi") == [0.0]
+
+
+def dip_of_acceleration(ends, depth):
+    """The rate whose slope over the step is `ends` at both its ends and `depth` in the middle, rad/s2; zero there."""
+    rate = np.polynomial.Polynomial(parabola(ends, depth)).integ()
+    return [*(rate - rate(STEP / 2)).coef]
+
+
+def first_lift_off(rate, theta):
+    """The first instant in the step at which N = m (g + Z_O_ddot) is zero, Z_O = r + r_0 sin(theta); None: never."""
+    theta_dot = np.polynomial.Polynomial(rate)
+    angle, theta_ddot = theta + theta_dot.integ(), theta_dot.deriv()
+
+    def N(t):
+        return PAPER.g + PAPER.r_0 * (np.cos(angle(t)) * theta_ddot(t) - np.sin(angle(t)) * theta_dot(t) ** 2)
+
+    t = np.linspace(0, STEP, 200_001)
+    below = np.flatnonzero(N(t) < 0)
+    return brentq(N, t[below[0] - 1], t[below[0]], xtol=1e-15) if below.size else None
+
+
+@pytest.mark.parametrize("s", [0.0, 0.03])
+@pytest.mark.parametrize("ends", [0.0, 300.0, 3e3, 1e4])
+def test_a_dip_of_the_carriers_acceleration_inside_one_step_lifts_the_wheel_at_its_instant(wheel, ends, s):
+    theta = 1.2
+    limit = PAPER.g / PAPER.r_0 / np.cos(theta)
+    for share, lifts in ((1.1, True), (1.02, True), (0.7, False)):
+        rate = dip_of_acceleration(ends, -share * limit)
+        w = wheel().start(guided=True, psi_start=0.0, theta_start=theta, phi_dot_start=-8.0, s=s).to(BEGIN)
+        status = w.give({"theta_dot_guide": rate}).step_to(BEGIN + STEP)
+        true = first_lift_off(rate, theta)
+        assert (status == DISCARD, true is not None) == (lifts, lifts), (
+            f"{ends} rad/s2 at the ends, {share} of the limit"
+        )
+        if lifts:
+            found = w.status(LAST_SUCCESSFUL_TIME) - BEGIN
+            within(abs(found - true), INSTANT, "instant of the lift-off, s")

@@ -1,8 +1,11 @@
 """Fixtures of every folder of tests: the built FMU and its instances, the reference of the paper's scenes."""
 
 import os
+import re
 import resource
+import shlex
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -26,12 +29,13 @@ settings.load_profile("same")
 AT_ONCE = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas")
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
 COMPONENTS = ("diagrams", "examples", "release")  # of the product, not the core
+BESIDE = {"vehicles": "examples"}  # whose tests share a process with those of another, and its builds
 
 
 def component(path: Path) -> str:
-    """The folder of a component's tests, or of the lab; none for the core's."""
+    """Of tests: the folder of their component, or of the lab; none for the core's."""
     part, folder = path.relative_to(ROOT).parts[:2]
-    return folder if part == "lab" or folder in COMPONENTS else ""
+    return BESIDE.get(folder, folder) if part == "lab" or folder in COMPONENTS else ""
 
 
 @pytest.fixture(autouse=True)
@@ -101,6 +105,20 @@ def description(fmu: str):
 def references() -> dict[str, Solution]:
     """The paper's two scenes by the reference, every 0.1 s."""
     return {scene: paper(scene) for scene in FRICTION}
+
+
+@pytest.fixture(scope="session")
+def vehicles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMUs of examples/vehicles and their packages, copied into an empty folder and built by the recipe of their
+    page."""
+    page = (ROOT / "examples" / "vehicles" / "README.md").read_text(encoding="utf-8")
+    (recipe,) = re.findall(r"```\n(project=.*?)```", page, re.DOTALL)
+    folder = tmp_path_factory.mktemp("copy")
+    recipe = recipe.replace("/path/to/this/checkout", str(ROOT)).replace("$project/dist/wheel.fmu", "$wheel")
+    commands = f"wheel={shlex.quote(str(build_folder() / 'wheel.fmu'))}\n{recipe}"
+    active = os.environ | {"VIRTUAL_ENV": sys.prefix}
+    subprocess.run(["bash", "-e", "-c", commands], cwd=folder, env=active, check=True, capture_output=True)
+    return folder / "build"
 
 
 @pytest.fixture(scope="session")

@@ -1,11 +1,13 @@
 """The example FMUs, built once per session."""
 
+from pathlib import Path
+
 import pytest
 
-from lab.vehicles.car import Fmus, build_all
+from lab.vehicles.car import Fmus, fmus_in
 
 
 @pytest.fixture(scope="session")
-def fmus(tmp_path_factory: pytest.TempPathFactory) -> Fmus:
+def fmus(vehicles: Path) -> Fmus:
     """wheel, and the FMUs compiled from C++."""
-    return build_all(tmp_path_factory.mktemp("examples"))
+    return fmus_in(vehicles)
