@@ -58,9 +58,12 @@ def test_the_rates_at_the_end_of_a_step_are_those_of_its_inputs_until_something_
     beyond(np.max(np.abs(left - held)), 1.0, "rates where the inputs stay, apart")
 
 
-@pytest.mark.parametrize(("brake", "rate"), [((1.0, -3.0, 1.0), 0.0), ((3.0, -3.0, 1.0), 1.0)])
+BRAKES = [((1.0, -3.0, 1.0), 0.0), ((3.0, -3.0, 1.0), 1.0), ((2.0, -3.0, 1.0), 1.0), ((6.0, -3.0), 0.0)]
+
+
+@pytest.mark.parametrize(("brake", "rate"), BRAKES)
 def test_the_capacity_of_a_brake_rests_while_its_polynomial_is_below_zero(wheel, brake, rate):
-    """At 2 s both polynomials rise by 1 N m/s."""
+    """At 2 s three of them rise by 1 N m/s, from below zero, above it and zero; the last falls from zero."""
     w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5, phi_dot_start=-20.0).give({"M_brake": brake}).by(2.0)
     assert w.rates(["tau_brake"])() == pytest.approx([rate])
 

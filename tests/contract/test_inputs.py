@@ -64,12 +64,13 @@ def test_a_polynomial_that_goes_on_is_no_restart_and_a_jump_is_one(upright):
 
 
 def test_derivatives_hold_for_one_step_and_the_value_stays_where_it_arrived(upright):
-    w = upright().give({"M_3": (1.0, 2.0)})
+    course = {"M_3": (1.0, 2.0, 4.0, -8.0)}
+    w = upright().give(course)
     assert (w.get("M_3"), w.by(0.5).get("M_3")) == ([1.0], [2.0])
     reached = w.get("omega_z")[0]
-    within(abs(reached - (0.5 + 0.25) / INERTIA), 8 * EPSILON, "omega_z reached, rad/s")
+    within(abs(reached - (0.5 + 1 / 4 + 1 / 6 - 1 / 8) / INERTIA), 16 * EPSILON, "omega_z reached, rad/s")
     assert w.by(0.5).get("M_3") == [2.0]
-    waits = upright().give({"M_3": (1.0, 2.0)}).by(0.0)  # a step of no length takes none of them away
+    waits = upright().give(course).by(0.0)  # a step of no length takes none of them away
     assert waits.by(0.5).get("M_3", "omega_z") == [2.0, reached]
     gained = w.get("omega_z")[0] - reached
     within(abs(gained - 0.5 * 2.0 / INERTIA), 16 * EPSILON, "omega_z gained, rad/s")
@@ -121,6 +122,21 @@ def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(
     spin = 2 * (4.0 - limit / 2) ** 2 / 2 / INERTIA
     within(abs(standing.get("omega_z")[0] - spin), 64 * EPSILON, "omega_z, rad/s")
     beyond(abs(standing.get("omega_z")[0] - 2 * 4.0**2 / 2 / INERTIA), 0.2, "omega_z without the friction, rad/s")
+
+
+@pytest.mark.parametrize(("share", "releases"), [(1.05, True), (0.97, False)])
+@pytest.mark.parametrize("rising", [True, False])
+@pytest.mark.parametrize("middle", [0.3, 0.4, 0.5, 0.6, 0.7, 0.8])
+def test_a_moment_that_swings_within_a_step_releases_the_wheel_where_it_beats_the_friction(
+    wheel, middle, rising, share, releases
+):
+    """Nine tenths of s N at the ends of the step and in between; beside one of the two, its peak."""
+    limit, h = 0.03 * WEIGHT, 0.05
+    swing = np.polynomial.Polynomial.fromroots([0.0, middle * h, h]) * (1 if rising else -1)
+    peak = max(swing(t.real) for t in swing.deriv().roots())
+    course = (swing * ((share - 0.9) / peak) + 0.9) * limit
+    w = wheel().start(s=0.03, **AT_REST).give({"M_3": tuple(course.coef)}).by(h)
+    assert (w.get("n_events")[0] > 0) == releases
 
 
 def test_a_held_wheel_stays_held_when_an_input_changes(wheel):

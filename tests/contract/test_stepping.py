@@ -7,7 +7,7 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import COUNTERS, ERROR, OK, FMU2Wheel
-from wheelfmu.truth.scenes import KINDS, SCENES
+from wheelfmu.truth.scenes import KINDS, PULLED, SCENES
 from wheelfmu.truth.sliding import ROAD, SLIDES, THROWN
 
 SECONDS = [float(t) for t in range(1, 11)]
@@ -116,12 +116,18 @@ def test_the_hint_about_rollback_changes_no_bit(wheel):
     assert w.bits() == other.bits()
 
 
+# Start, an instant on the way, and whether the ground pulls there.
+FREE = [({}, 0.5, False), ({"keep_contact": True}, 0.5, False), (PULLED, 0.1, False), (PULLED, 0.22, True)]
+
+
 def test_each_change_and_each_transition_counts_as_one_restart(wheel):
-    """Of a wheel that is unfolded, the change that ends this is the first."""
-    w = wheel().start().to(0.5)
-    for k in range(4):
-        assert w.get("n_restarts", "n_events") == [k, 0]
-        w.put(F_X=1.0 + k).by(0.1)
+    """Of a wheel that is unfolded, the change that ends this is the first, also where the ground may pull, or pulls."""
+    for values, t, pulls in FREE:
+        w = wheel().start(**values).to(t)
+        assert (w.get("lambda_3")[0] < 0) == pulls
+        for k in range(4):
+            assert w.get("n_restarts", "n_events") == [k, 0]
+            w.put(F_X=1.0 + k, s=1e-3).by(1e-3)
     for values in ({"s": 0.03}, {"mu_max": 0.45, "mu_slide": 0.4}, {"s": 0.03, "mu_max": 0.45, "mu_slide": 0.4}):
         w = wheel(logging=True).start(**values).to(2.0)
         restarts, events = w.get("n_restarts", "n_events")

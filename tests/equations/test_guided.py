@@ -105,21 +105,34 @@ def ramp_followed(scene: eq.Scene, before: eq.Motion, psi_dot: float, theta_dot:
     rho, eta, N = w.r_0 + w.r * sine, w.r * cosine, w.m * w.r_0 * cosine * d_1
     spin = before.phi_dot + before.psi_dot * cosine
 
-    def rates(_: float, y: np.ndarray) -> list[float]:
-        f_x, f_y = -scene.mu_slide * N * y[:2] / np.hypot(*y[:2])
-        omega_dot = (rho * f_x - w.s * N * np.sign(y[2])) / w.J_z
+    def friction(y: np.ndarray) -> np.ndarray:
+        return -scene.mu_slide * N * y[:2] / np.hypot(*y[:2])
+
+    def rates(_: float, y: np.ndarray, side: float) -> list[float]:
+        f_x, f_y = friction(y)
+        omega_dot = (rho * f_x - w.s * N * side) / w.J_z if side else 0.0
         return [f_x / w.m - eta * d_2 + rho * omega_dot, f_y / w.m + (w.r_0 * sine + w.r) * d_1, omega_dot]
 
-    start = [before.slip_x, before.slip_y, spin]
-    return solve_ivp(rates, (0, 1), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1].tolist()
+    def hold(_: float, y: np.ndarray, side: float) -> float:
+        return 1.0 if side else w.s * N - abs(rho * friction(y)[0])
+
+    hold.terminal = True
+    part, y, side = 0.0, np.array([before.slip_x, before.slip_y, spin]), np.sign(spin)
+    while part < 1:
+        run = solve_ivp(rates, (part, 1), y, "DOP853", events=hold, args=(side,), rtol=1e-12, atol=1e-14)
+        part, y = run.t[-1], run.y[:, -1]
+        side = side or np.sign(friction(y)[0])
+    return y.tolist()
 
 
 @pytest.mark.parametrize("seed", range(40))
 def test_a_jump_of_a_sliding_wheel_is_the_ramp_of_newton_and_euler(seed: int) -> None:
-    """Pressed and relieved, while it spins and slides on: to twelve digits."""
+    """To twelve digits; pressed and relieved, while it spins and slides on, also on ice or without s."""
     random = np.random.default_rng(seed)
     scene = eq.scene(eq.paper_wheel(s=random.uniform(0, 0.03)), kind=eq.ROLLING, sigma=1)
     scene.guided, scene.contact, scene.mu_slide = 1, 1, random.uniform(0.1, 0.8)
+    scene.mu_slide *= seed % 4 != 1
+    scene.wheel.s *= seed % 4 != 2
     slip, theta = random.uniform(0.7, 2, 2) * random.choice([-1, 1], 2), random.uniform(0.9, 2.2)
     before = eq.Motion(0.3, theta, 0, *random.uniform(-0.3, 0.3, 2), random.uniform(12, 20), 0, 0, *slip)
     psi_dot, theta_dot = random.uniform(-0.8, 0.8, 2)
@@ -128,9 +141,24 @@ def test_a_jump_of_a_sliding_wheel_is_the_ramp_of_newton_and_euler(seed: int) ->
     want = ramp_followed(scene, before, psi_dot, theta_dot)
     found = [after.slip_x, after.slip_y, after.phi_dot + psi_dot * np.cos(theta)]
     within(absolute_error(found, want), 2e-11, "slip, m/s, and spin, rad/s, apart")
-    scene.mu_slide *= 1.001
+    scene.mu_slide, scene.wheel.s = 1.001 * scene.mu_slide, 1.001 * scene.wheel.s
     other = ramp_followed(scene, before, psi_dot, theta_dot)
     beyond(absolute_error(found, other), 1e-7, "with a thousandth more friction")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_held_wheel_that_slides_is_released_within_a_jump_where_the_slip_has_turned_along_it(side: float) -> None:
+    """Held as long as friction along the wheel turns it by less than s N: with ten times s, to the end."""
+    for s, held in ((0.03, False), (0.3, True)):
+        scene = eq.scene(eq.paper_wheel(s=s), kind=eq.HELD)
+        scene.guided, scene.contact, scene.mu_slide = 1, 1, 0.4
+        before = eq.Motion(0.3, 1.2, 0, 0, 0, 0, 0, 0, 0.02 * side, -0.6)
+        after = eq.Motion.from_buffer_copy(before)
+        jump(scene, 3.0 * side, 1.5, after)
+        spin = after.phi_dot + 3.0 * side * np.cos(1.2)
+        want = ramp_followed(scene, before, 3.0 * side, 1.5)
+        within(absolute_error([after.slip_x, after.slip_y, spin], want), 2e-11, "slip, m/s, and spin, rad/s, apart")
+        assert (spin == 0) == held
 
 
 @pytest.mark.parametrize("slides", [0, 1], ids=["rolls", "slides"])

@@ -32,6 +32,15 @@ def required_friction(*reaction: float) -> float:
     return eq.LIBRARY.wheel_required_friction((c_double * 3)(*reaction))
 
 
+def required_friction_rate(reaction: tuple[float, ...], rate: tuple[float, ...]) -> float:
+    return eq.LIBRARY.wheel_required_friction_rate((c_double * 3)(*reaction), (c_double * 3)(*rate))
+
+
+def test_required_friction_changes_as_its_quotient_and_is_least_where_no_force_is_tangential() -> None:
+    assert required_friction_rate((3, 4, 10), (5, 0, -2)) == pytest.approx(0.4)
+    assert required_friction_rate((0, 0, 10), (5, 0, -2)) == 0
+
+
 def test_required_friction_is_tangential_over_normal_force() -> None:
     assert required_friction(3, 4, 10) == 0.5
     assert required_friction(-3, 4, 10) == 0.5

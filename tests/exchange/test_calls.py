@@ -92,6 +92,18 @@ def test_directional_derivatives_are_differences_under_every_law(library: Librar
     beyond((np.abs(got * (1 + 1e-6) - want) / size).max(), 2e-7, "Jacobian a millionth larger, relative")
 
 
+def test_directional_derivatives_after_a_billion_turns_are_those_of_the_first(library: Library) -> None:
+    """To the digits that are left of the angles."""
+    found = []
+    for turns in (0, 1e9):
+        with at_odd(library, s=0.02, F_X=5.0, F_Y=-8.0) as wheel:
+            wheel.place(0.3, ODD + 2 * np.pi * turns * np.isin(STATES, ("psi", "phi")))
+            found.append(wheel.jacobian(REACTIONS, STATES[2:]))
+    size = 1 + np.abs(found[0])
+    within((np.abs(found[1] - found[0]) / size).max(), 2e-5, "Jacobian, relative")
+    beyond((np.abs(found[1] * (1 + 1e-4) - found[0]) / size).max(), 3e-5, "Jacobian a ten-thousandth larger, relative")
+
+
 def test_derivatives_by_other_states_than_the_spin_do_not_know_the_width_of_the_law(library: Library) -> None:
     """Spinning far outside of any layer; partner: another s."""
     found = []

@@ -106,6 +106,12 @@ def test_the_energy_is_kept_to_half_the_tolerance_wherever_it_is_read(library, t
     beyond(np.percentile(tilted, share), 30, "change of the energy of a motion that leans, tolerances")
 
 
+def test_in_whatever_order_its_instants_are_read_they_have_the_same_bits(library: ctypes.CDLL) -> None:
+    orbit, t = Orbit(library), np.linspace(0, 70, 500)
+    order = np.random.default_rng(5).permutation(len(t))
+    np.testing.assert_array_equal(orbit(t[order]), Orbit(library)(t)[order])
+
+
 LEAPING = Start(theta=0.7, psi_dot=-4.0, theta_dot=3.0, phi_dot=-3.0)
 
 

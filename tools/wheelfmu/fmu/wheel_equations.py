@@ -63,7 +63,12 @@ FORMULATIONS = ("reduced", "multibody", "sliding", "multibody_sliding")
 REDUCED, MULTIBODY, SLIDING, MULTIBODY_SLIDING = (Formulation.in_dll(LIBRARY, f"wheel_{name}") for name in FORMULATIONS)
 for function in (LIBRARY.wheel_reduced_state, LIBRARY.wheel_euler_rates, LIBRARY.wheel_euler_kinematics):
     function.restype = None
-for function in (LIBRARY.wheel_energy, LIBRARY.wheel_required_friction, LIBRARY.wheel_height):
+for function in (
+    LIBRARY.wheel_energy,
+    LIBRARY.wheel_required_friction,
+    LIBRARY.wheel_required_friction_rate,
+    LIBRARY.wheel_height,
+):
     function.restype = c_double
 LIBRARY.wheel_height.argtypes = [POINTER(Parameters), c_double]
 LIBRARY.wheel_set_slope.argtypes = [POINTER(Parameters), c_double, c_double, c_double]
