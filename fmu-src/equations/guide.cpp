@@ -134,47 +134,54 @@ double spin_after(double spin, double free, double friction) {
   return std::fabs(free) <= against ? 0 : left * (free - std::copysign(against, free));
 }
 
+// (motion, rates to which the carrier jumps) => the ramp
+Ramp ramp_of(const WheelScene& scene, const WheelMotion& motion, double psi_dot, double theta_dot) {
+  const WheelParameters& w = scene.wheel;
+  const double sine = std::sin(motion.theta), c = std::cos(motion.theta);
+  const double lean = std::fabs(c) < 1e-15 ? 0 : c, eta = w.r * lean;  // of an upright wheel it is rounding
+  const double d_1 = theta_dot - motion.theta_dot, d_2 = (psi_dot - motion.psi_dot) * sine;
+  const double N = scene.ground == WHEEL_GROUND_PULLS ? 0 : w.m * w.r_0 * lean * d_1;
+  Ramp r = {};
+  r.slides = scene.contact == WHEEL_SLIDES;
+  r.m = w.m;
+  r.rho = w.r_0 + w.r * sine;
+  r.J = w.J_z + (r.slides ? 0 : w.m * r.rho * r.rho);
+  r.a_x = -eta * d_2;
+  r.a_y = (w.r_0 * sine + w.r) * d_1;
+  r.free = w.m * r.rho * eta * d_2 / r.J;
+  r.mu_N = r.slides ? scene.mu_slide * N : 0;
+  r.s_N = scene.friction.kind == WHEEL_FRICTIONLESS ? 0 : w.s * N;
+  r.width_omega = scene.friction.omega_s;
+  return r;
+}
+
 }  // namespace
 
 void wheel_jump(const WheelScene* scene, double hold, double psi_dot, double theta_dot, WheelMotion* motion) {
-  const WheelParameters& w = scene->wheel;
-  const double sine = std::sin(motion->theta), c = std::cos(motion->theta), rho = w.r_0 + w.r * sine;
-  const double lean = std::fabs(c) < 1e-15 ? 0 : c, eta = w.r * lean;  // of an upright wheel it is rounding
-  const double d_1 = theta_dot - motion->theta_dot, d_2 = (psi_dot - motion->psi_dot) * sine;
-  const double N = scene->ground == WHEEL_GROUND_PULLS ? 0 : w.m * w.r_0 * lean * d_1;
-  const bool slides = scene->contact == WHEEL_SLIDES, regularized = scene->friction.kind == WHEEL_REGULARIZED;
-  Ramp r = {};
-  r.m = w.m;
-  r.J = w.J_z + (slides ? 0 : w.m * rho * rho);
-  r.rho = rho;
-  r.a_x = -eta * d_2;
-  r.a_y = (w.r_0 * sine + w.r) * d_1;
-  r.free = w.m * rho * eta * d_2 / r.J;
-  r.mu_N = slides ? scene->mu_slide * N : 0;
-  r.s_N = scene->friction.kind == WHEEL_FRICTIONLESS ? 0 : w.s * N;
-  r.slides = slides;
+  const double c = std::cos(motion->theta);
+  const bool regularized = scene->friction.kind == WHEEL_REGULARIZED;
+  Ramp r = ramp_of(*scene, *motion, psi_dot, theta_dot);
   Vector y = {motion->slip_x, motion->slip_y, motion->phi_dot + motion->psi_dot * c};
-  r.width_omega = scene->friction.omega_s;
   r.kappa = regularized ? std::tanh(y[2] / r.width_omega) : (y[2] > 0) - (y[2] < 0);
   CONSTANT(double, few, 40, "widths", "where friction holds a speed at zero, it ends so close to it");
   const bool stands = regularized && ramp * hold > few * r.width_omega * r.J;
   const bool held = scene->friction.kind == WHEEL_HELD || stands;
-  const double holds = std::fmax(ramp * hold + w.s * N, ramp * scene->load.brake);
-  if (slides && (r.mu_N != 0 || r.s_N != 0)) {
-    const double scale = y.head<2>().norm() + rho * std::fabs(y[2]) + std::fabs(r.a_x) + std::fabs(r.a_y);
+  const double holds = std::fmax(ramp * hold + r.s_N, ramp * scene->load.brake);
+  if (r.slides && (r.mu_N != 0 || r.s_N != 0)) {
+    const double scale = y.head<2>().norm() + r.rho * std::fabs(y[2]) + std::fabs(r.a_x) + std::fabs(r.a_y);
     r.width_u = narrow * scale;
-    if (!regularized) r.width_omega = narrow * scale / rho;
+    if (!regularized) r.width_omega = narrow * scale / r.rho;
     follow(r, holds, held && std::fabs(turning(r, y)) <= holds, scale, y);
     if (y.head<2>().norm() < few * r.width_u) y[0] = y[1] = 0;
     if (!regularized && std::fabs(y[2]) < few * r.width_omega) y[2] = 0;
-  } else if (slides) {
+  } else if (r.slides) {
     y[0] += r.a_x;
     y[1] += r.a_y;
   } else if (const bool stays = held && std::fabs(r.free * r.J) <= holds; regularized && r.s_N > 0 && !stays) {
-    follow(r, 0, false, rho * (std::fabs(y[2]) + std::fabs(r.free) + std::fabs(r.s_N) / r.J), y);
+    follow(r, 0, false, r.rho * (std::fabs(y[2]) + std::fabs(r.free) + std::fabs(r.s_N) / r.J), y);
   } else if (!stays) {
     y[2] = spin_after(y[2], r.free, r.s_N / r.J * (regularized ? std::fabs(r.kappa) : 1));
   }
-  *motion = {motion->psi,        motion->theta, motion->phi, psi_dot,           theta_dot,
-             y[2] - psi_dot * c, motion->X_O,   motion->Y_O, slides ? y[0] : 0, slides ? y[1] : 0};
+  *motion = {motion->psi, motion->theta,       motion->phi,        psi_dot, theta_dot, y[2] - psi_dot * c, motion->X_O,
+             motion->Y_O, r.slides ? y[0] : 0, r.slides ? y[1] : 0};
 }
