@@ -50,13 +50,16 @@ void change_spin(const Setup& setup, double t, double* y, InForce& now) {
 
 bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
 
-// (t, y) => slip above the least; what is left of it at its end falls at once. A slip that falls or turns faster than
-// by g needs more digits of the instant.
+// (t, y) => slip above the least; what is left of it at its end falls at once
 double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  const Rates rates = rates_of(setup, now.scene_at(t), y);
-  const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
-  const double rate = std::sqrt(fall * fall + turning * turning);
-  const double least = least_slip(setup, t) * std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
+  CONSTANT(double, near, 1e3, "least slips", "farther from its end a slip cannot fall to it before the next sample");
+  double least = least_slip(setup, t);
+  if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
+    const Rates rates = rates_of(setup, now.scene_at(t), y);
+    const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
+    const double rate = std::sqrt(fall * fall + turning * turning);
+    least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
+  }
   return (y[WHEEL_SLIP] - least) / setup.slip_scale;
 }
 
