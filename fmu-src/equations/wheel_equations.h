@@ -125,9 +125,10 @@ typedef struct WheelDynamics {
   double tau;                            /* N m, moment of ground and brake about the axle */
 } WheelDynamics;
 
-/* A slip in the direction chi, at a state of `wheel_reduced` under the scene's laws, whatever its `contact` is: its
- * rate without the turning of e1 is (growth d + turn t), d along the slip and t a quarter turn ahead, whatever |u| is.
- * So |u| chi_dot = turn - |u| psi_dot: near |u| = 0 chi settles where turn falls through zero. */
+/* A slip in the direction chi, at a state of `wheel_reduced`, under the scene's laws and whatever its `contact` is. Let
+ * d be the unit vector along the slip, and t a quarter turn ahead of it. The rate of the slip, without the turning of
+ * e1, is growth d + turn t. It does not depend on |u|. So |u| chi_dot = turn - |u| psi_dot, and near |u| = 0 chi
+ * settles where turn falls through zero. */
 typedef struct WheelSlip {
   double N;            /* N, normal force */
   double room;         /* 1 without sliding friction; where it falls to zero, the wheel jams: no N >= 0 exists */

@@ -50,7 +50,7 @@ Lean lean_of(const solver::Problem& problem, const double* y0) {
   CONSTANT(double, lean_tried, 1e-4, "of sin(theta)", "small against the bend of the rates, large against rounding");
   double y[states], along[states], rate[states];
   std::copy_n(y0, states, y);
-  y[WHEEL_OMEGA_1] = 1;
+  y[WHEEL_OMEGA_1] = 1;  // theta_dot = 1: these rates are derivatives by theta
   problem.derivative(problem.owner, 0, y, along);
   y[WHEEL_OMEGA_1] = 0;
   const auto tipped = [&](double by) {
@@ -89,6 +89,7 @@ bool maps(const Swing& swing, const solver::Problem& problem, double t, const En
 // side is its mirror image with time reversed.
 bool is_mirrored(const Swing& swing, const solver::Problem& problem) {
   const Course& course = swing.course();
+  if (!(course.half_period() > 0)) return false;
   Entry from_zero;  // read without a run
   for (int i = 0; i < samples; ++i) {
     const double since = (i + 0.5) / samples * course.half_period(), t = course.T2 + since;
@@ -98,7 +99,7 @@ bool is_mirrored(const Swing& swing, const solver::Problem& problem) {
     };
     if (!maps(swing, problem, course.T2 - since, from_zero, t, mirror)) return false;
   }
-  return course.half_period() > 0;
+  return true;
 }
 
 // The circle or straight line of a start in steady motion: omega_1 = 0 except for rounding, a small lean swings instead

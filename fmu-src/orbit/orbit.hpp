@@ -20,10 +20,13 @@
 // From the question to the answer, each type written in one place and constant from then on, but for what a track and
 // an entry remember of the place read last:
 //
-//   FreeMotion   by the owner: the problem and its start
-//   Course       by stepping along it (building.cpp): the integrated motion, in its own frame
-//   Swing     by its constructor, of a course: the terms from which any other half follows
-//   Entry        by Orbit::enter: the run on a swing, from its own heading, roll angle and place
+//   FreeMotion     by the owner: the problem and its start
+//   Course         by stepping along it (building.cpp): the integrated motion, in its own frame, on one of two paths:
+//     Track          the polynomials of its steps
+//     Circle         steady motion, a circle or a straight line, of which any piece is a half
+//   Swing          by its constructor, of a course: the half swing and the terms from which any other one follows
+//   Entry          by Orbit::enter: the run on a swing, from its own heading, roll angle and place
+//     Half, Pose     one half, and how it lies in fixed axes
 //
 // State of the reduced form (wheel_equations.h). Time in s, zero at the start. Path of O as X_O + i Y_O.
 #pragma once

@@ -1,5 +1,5 @@
-// DOP853: the Runge-Kutta pair of Dormand and Prince, order 8, dense output of order 7 (dormand_prince.hpp), of problems
-// of eight states.
+// DOP853: the Runge-Kutta pair of Dormand and Prince, order 8, dense output of order 7 (dormand_prince.hpp), of
+// problems of eight states.
 //
 // Nothing is kept from step to step except the wanted size of the next one: a restart is free and a snapshot is a copy.
 #pragma once

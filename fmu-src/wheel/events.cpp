@@ -10,52 +10,54 @@
 namespace wheel {
 namespace {
 
-bool can_change_layer(const Setup& setup, const InForce& now) {
-  return setup.has_layer() && now.law().kind != WHEEL_FRICTIONLESS;
+bool can_change_layer(const Setup& setup, const InForce& in_force) {
+  return setup.has_layer() && in_force.law().kind != WHEEL_FRICTIONLESS;
 }
 
 // (y) => how far the spin is from the edge of the layer
-double way_to_layer(const Setup& setup, const InForce& now, double, const double* y) {
+double way_to_layer(const Setup& setup, const InForce& in_force, double, const double* y) {
   const double omega_z = y[WHEEL_OMEGA_3], limit = layer_edge(setup);
-  const double inside = limit - std::fabs(omega_z), outside = now.law().sigma * omega_z - limit;
-  return (now.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
+  const double inside = limit - std::fabs(omega_z), outside = in_force.law().sigma * omega_z - limit;
+  return (in_force.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 
 // In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
-bool can_change_spin(const Setup& setup, const InForce& now) {
-  const WheelFrictionKind law = now.law().kind;
+bool can_change_spin(const Setup& setup, const InForce& in_force) {
+  const WheelFrictionKind law = in_force.law().kind;
   if (law == WHEEL_FRICTIONLESS) return setup.model_exchange;
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
 
 // (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
 // that holding leaves; without friction, the brake that asks for a law
-double spin_left(const Setup& setup, const InForce& now, double t, const double* y) {
-  const WheelFriction& law = now.law();
+double spin_left(const Setup& setup, const InForce& in_force, double t, const double* y) {
+  const WheelFriction& law = in_force.law();
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
   if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
   if (law.kind == WHEEL_HELD)
     return std::fabs(spin) > spin_error ? -std::fabs(spin)
-                                        : hold_at(setup, now.scene_at(t), y).reserve / setup.moment_scale;
-  return -now.scene_at(t).load.brake / setup.moment_scale;
+                                        : hold_at(setup, in_force.scene_at(t), y).reserve / setup.moment_scale;
+  return -in_force.scene_at(t).load.brake / setup.moment_scale;
 }
 
-int spin_alone(const InForce& now) { return now.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : all_states(now); }
+int spin_alone(const InForce& in_force) {
+  return in_force.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : all_states(in_force);
+}
 
-void change_spin(const Setup& setup, double t, double* y, InForce& now) {
-  const WheelFrictionKind law = now.law().kind;
+void change_spin(const Setup& setup, double t, double* y, InForce& in_force) {
+  const WheelFrictionKind law = in_force.law().kind;
   if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
-  law == WHEEL_HELD ? release(setup, t, y, now) : decide_law(setup, t, y, now);
+  law == WHEEL_HELD ? release(setup, t, y, in_force) : decide_law(setup, t, y, in_force);
 }
 
-bool is_sliding(const Setup&, const InForce& now) { return now.slides(); }
+bool is_sliding(const Setup&, const InForce& in_force) { return in_force.slides(); }
 
 // (t, y) => slip above the least; what is left of it at its end falls at once
-double slip_left(const Setup& setup, const InForce& now, double t, const double* y) {
+double slip_left(const Setup& setup, const InForce& in_force, double t, const double* y) {
   CONSTANT(double, near, 1e3, "least slips", "farther from its end a slip cannot fall to it before the next sample");
   double least = least_slip(setup, t);
   if (y[WHEEL_SLIP] < near * least) {  // a slip that falls or turns faster than by g needs more digits of the instant
-    const Rates rates = rates_of(setup, now.scene_at(t), y);
+    const Rates rates = rates_of(setup, in_force.scene_at(t), y);
     const double fall = std::fmin(rates.y_dot[WHEEL_SLIP], 0), turning = y[WHEEL_SLIP] * rates.y_dot[WHEEL_CHI];
     const double rate = std::sqrt(fall * fall + turning * turning);
     least *= std::fmax(1, rate * setup.time_scale * setup.time_scale / setup.length);
@@ -63,9 +65,9 @@ double slip_left(const Setup& setup, const InForce& now, double t, const double*
   return (y[WHEEL_SLIP] - least) / setup.slip_scale;
 }
 
-void end_slip(const Setup& setup, double t, double* y, InForce& now) {
+void end_slip(const Setup& setup, double t, double* y, InForce& in_force) {
   y[WHEEL_SLIP] = 0;
-  decide_contact(setup, t, y, now);
+  decide_contact(setup, t, y, in_force);
 }
 
 bool always(const Setup&, const InForce&) { return true; }
@@ -78,7 +80,7 @@ double jam_left(const Setup&, const double*, double N) { return N < solver::neve
 // (y) => rad from where the wheel counts as flat
 double height_of(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
-void change_layer(const Setup& setup, double t, double* y, InForce& now) { decide_law(setup, t, y, now); }
+void change_layer(const Setup& setup, double t, double* y, InForce& in_force) { decide_law(setup, t, y, in_force); }
 
 }  // namespace
 
@@ -94,17 +96,19 @@ constexpr EventRow event_rows[] = {
      .state = spin_alone,
      .follow = change_spin},
     {.event = Event::lost_grip,
-     .can_occur = [](const Setup& setup, const InForce& now) { return is_limited(setup, now.road) && !now.slides(); },
+     .can_occur = [](const Setup& setup,
+                     const InForce& in_force) { return is_limited(setup, in_force.road) && !in_force.slides(); },
      .value = grip_left,
      .ends = [](const Setup& setup) { return !setup.sliding; },
      .follow = begin_slide,
      .ending = "needs a friction coefficient above mu_max",
-     .limit = [](const InForce& now) { return now.road.mu_max; }},
+     .limit = [](const InForce& in_force) { return in_force.road.mu_max; }},
     {.event = Event::slip_ends,
      .can_occur = is_sliding,
      .value = slip_left,
      .in_model_exchange = false,
-     .follow = end_slip},
+     .follow = end_slip,
+     .slides_anew = true},
     {.event = Event::lost_contact,
      .can_occur = always,
      .quick_value = pressure_of,
@@ -119,7 +123,7 @@ constexpr EventRow event_rows[] = {
      .in_model_exchange = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
-     .limit = [](const InForce& now) { return now.scene.mu_slide; }},
+     .limit = [](const InForce& in_force) { return in_force.scene.mu_slide; }},
     {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = height_of,
@@ -140,32 +144,33 @@ static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order 
 constexpr double largest_margin = 1e100;
 
 // (value) => margin: below zero where the event has occurred
-double signed_margin(const EventRow& row, const InForce& now, double value) {
-  return row.observation ? (now.is_below(row.event) ? -value : value) + row.rounding : value;
+double signed_margin(const EventRow& row, const InForce& in_force, double value) {
+  return row.observation ? (in_force.is_below(row.event) ? -value : value) + row.rounding : value;
 }
 
 }  // namespace
 
-Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now) {
-  if (row.follow) row.follow(setup, t, y, now);
-  if (row.observation) now.cross(row.event);
-  const bool has_friction = now.law().kind != WHEEL_FRICTIONLESS || now.slides();
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& in_force) {
+  if (row.follow) row.follow(setup, t, y, in_force);
+  if (row.observation) in_force.cross(row.event);
+  const bool has_friction = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.slides();
   return row.follow || (row.bends_friction && has_friction) ? Consequence::bends : Consequence::goes_on;
 }
 
-double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y) {
-  const double value =
-      row.value ? row.value(setup, now, t, y) : row.quick_value(setup, y, rates_of(setup, now.scene_at(t), y).N);
-  return std::clamp(signed_margin(row, now, value), -largest_margin, largest_margin);
+double margin_of(const EventRow& row, const Setup& setup, const InForce& in_force, double t, const double* y) {
+  const double value = row.value ? row.value(setup, in_force, t, y)
+                                 : row.quick_value(setup, y, rates_of(setup, in_force.scene_at(t), y).N);
+  return std::clamp(signed_margin(row, in_force, value), -largest_margin, largest_margin);
 }
 
-double least_margin(const Setup& setup, const InForce& now, const double* y, double N) {
+double least_margin(const Setup& setup, const InForce& in_force, const double* y, double N) {
   double least = solver::never;
   const auto take = [&]<std::size_t i>() {
     constexpr const EventRow& row = event_rows[i];
     if constexpr (row.quick_value != nullptr) {
-      if (!row.can_occur(setup, now)) return;
-      if (const double margin = signed_margin(row, now, row.quick_value(setup, y, N)); margin < least) least = margin;
+      if (!row.can_occur(setup, in_force)) return;
+      if (const double margin = signed_margin(row, in_force, row.quick_value(setup, y, N)); margin < least)
+        least = margin;
     }
   };
   // By index, so that the compiler inlines the values: a plain loop costs 2 % of a motion's instructions.
@@ -175,10 +180,10 @@ double least_margin(const Setup& setup, const InForce& now, const double* y, dou
   return least < -largest_margin ? -largest_margin : least;
 }
 
-void find_below(const Setup& setup, double t, const double* y, InForce& now) {
+void find_below(const Setup& setup, double t, const double* y, InForce& in_force) {
   for (const EventRow& row : event_rows)
-    if (is_observed(row, setup) && row.can_occur(setup, now) && margin_of(row, setup, now, t, y) < 0)
-      now.cross(row.event);
+    if (is_observed(row, setup) && row.can_occur(setup, in_force) && margin_of(row, setup, in_force, t, y) < 0)
+      in_force.cross(row.event);
 }
 
 }  // namespace wheel

@@ -13,32 +13,35 @@ CONSTANT(double, spin_error, 1e-3, "of the scale of rates", "beyond zero by less
 
 inline int all_states(const InForce&) { return -1; }
 
-// A row by itself is enough for the solver and for snapshots. Named elsewhere are, in exchange.cpp, `spin_changes`,
-// which a spin that the caller has set does not count for, `lies_flat`, which alone is asked for beyond flat, and
-// `lost_contact`, which decides the ground's side (run.cpp too); `jams` in motion.cpp and wheel.cpp; and in messages.
+// A row by itself is enough for the solver and for snapshots. These rows are named elsewhere too:
+//   spin_changes   in exchange.cpp: a spin that the caller has set is not this event
+//   lies_flat      in exchange.cpp: its margin alone is asked for beyond flat
+//   lost_contact   in run.cpp and exchange.cpp: it decides the side of the ground
+//   jams           in motion.cpp, wheel.cpp and logbook.cpp: a start or a road at which the wheel jams
 struct EventRow {
   Event event;
   // Whether it can occur, given what is in force.
-  bool (*can_occur)(const Setup& setup, const InForce& now);
-  // Its value is smooth, scaled to about one, and positive until the event; without friction, where a brake asks for a
-  // law, it is zero until one is set. The value of an observed event changes its sign again and again. A row has one of
-  // these two. The quick one takes state and normal force, N, which come with the rates: the solver looks at it only
-  // where it comes near zero.
-  double (*value)(const Setup& setup, const InForce& now, double t, const double* y) = nullptr;
+  bool (*can_occur)(const Setup& setup, const InForce& in_force);
+  // A row has one of two values. Each is smooth, scaled to about one, and falls below zero at the event. The quick one
+  // depends on the state and on the normal force N, which come with the rates: the solver looks at it only where it
+  // comes near zero. The value of an observed event changes its sign again and again. The value of a brake that is not
+  // in use is zero until one is set.
+  double (*value)(const Setup& setup, const InForce& in_force, double t, const double* y) = nullptr;
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all.
-  int (*state)(const InForce& now) = all_states;
+  int (*state)(const InForce& in_force) = all_states;
   double rounding = 0;            // where there is an observation: a value beyond zero by less does not count
   bool in_model_exchange = true;  // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
   // Where it bends the motion: what is in force from here on, and the state, of which it sets a rate that is exactly
   // zero, or the slip.
-  void (*follow)(const Setup& setup, double t, double* y, InForce& now) = nullptr;
+  void (*follow)(const Setup& setup, double t, double* y, InForce& in_force) = nullptr;
   bool bends_friction = false;  // it bends the motion where friction acts
+  bool slides_anew = false;     // a wheel that slides after it has started to slide anew
   // For messages, as plain text: the reason why the run has ended, which follows "the wheel"; the parameter's value at
   // the end of that text, if there is one; and the observation, which follows the instant.
   const char* ending = nullptr;
-  double (*limit)(const InForce& now) = nullptr;
+  double (*limit)(const InForce& in_force) = nullptr;
   const char* observation = nullptr;
 };
 
@@ -52,15 +55,15 @@ inline bool is_observed(const EventRow& row, const Setup& setup) { return row.ob
 // An event that does not end the run: what follows is in force. One that is observed alone changes nothing else. A run
 // passes it by pass_event (transitions.hpp), which counts and logs too; follow_on_orbit (posed_problem.hpp) follows it
 // ahead of the run; and after a motion in which none was followed, find_below finds those that are observed.
-Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& now);
+Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& in_force);
 
 // (row, t, y) => its margin
-double margin_of(const EventRow& row, const Setup& setup, const InForce& now, double t, const double* y);
+double margin_of(const EventRow& row, const Setup& setup, const InForce& in_force, double t, const double* y);
 
 // (y, its normal force N) => least margin of the rows with a quick value that can occur
-double least_margin(const Setup& setup, const InForce& now, const double* y, double N);
+double least_margin(const Setup& setup, const InForce& in_force, const double* y, double N);
 
 // (t, y) => which observed events lie below zero, after a motion in which they were not followed
-void find_below(const Setup& setup, double t, const double* y, InForce& now);
+void find_below(const Setup& setup, double t, const double* y, InForce& in_force);
 
 }  // namespace wheel

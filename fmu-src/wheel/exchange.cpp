@@ -121,12 +121,12 @@ int place_in_x(unsigned variable) {
 int place_in_y(int in_x) { return states_of_x[in_x].in_y; }
 
 void act_at_once(Wheel& w) {
-  InForce& now = w.run.in_force;
-  const InForce before = now;
-  now.take_over(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs);
+  InForce& in_force = w.run.in_force;
+  const InForce before = in_force;
+  in_force.take_over(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs);
   w.run.pending = Pending::nothing;
-  if (now.road == before.road || w.run.phase == Phase::event_mode) return;
-  decide_law(w.setup, w.run.t, w.run.y, now);
+  if (in_force.road == before.road || w.run.phase == Phase::event_mode) return;
+  decide_law(w.setup, w.run.t, w.run.y, in_force);
   note_changes(w, before);
 }
 

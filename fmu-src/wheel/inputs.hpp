@@ -44,7 +44,8 @@ struct Inputs {
   // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
   void set_load_at(double t, WheelLoad& load) const;
-  // A brake at zero can only be put on, and one whose polynomial is below zero rests.
+  // The capacity of a brake is not negative: at zero its rate is not either, and below zero of its polynomial it is
+  // zero.
   WheelLoad load_rate_at(double t) const;
   // (input, t) => its value, of a brake not below zero
   double value_of(int input, double t) const;

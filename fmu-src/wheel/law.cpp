@@ -30,8 +30,8 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
 
 // Whether the laws of a wheel that starts to slide are tried one by one, held first: without spin, with rolling
 // friction or brake.
-bool may_be_held(const Setup& setup, const InForce& now, const double* y) {
-  const bool some = now.road.s != 0 || now.inputs.braked;
+bool may_be_held(const Setup& setup, const InForce& in_force, const double* y) {
+  const bool some = in_force.road.s != 0 || in_force.inputs.braked;
   return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }
 
@@ -61,16 +61,19 @@ WheelMotion motion_of(const Setup& setup, const WheelScene& scene, const double*
   return {k.psi, k.theta, k.phi, k.psi_dot, k.theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
 }
 
-// (y) => y after a jump of the carrier to the rates asked for
+// (y) => y after a jump of the carrier to the rates asked for: the limit of ever steeper ramps of its rates
+// (docs/equations.md). The ramp takes no time. In it
+//   only a brake that presses at this instant acts;
+//   a wheel that is held, or rests in a regularized law, has the reserve that holding leaves;
+//   a wheel outside the layer of a regularized law has the whole law, because it may enter the layer.
 void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y) {
   if (rests(demand, y)) return;
   WheelMotion motion = motion_of(setup, scene, y);
   WheelScene ramp = scene;
-  // The jump is a ramp that takes no time: only a brake that presses at this instant acts in it.
   ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);
   const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
   const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
-  if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)  // it may enter the layer
+  if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)
     ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   wheel_jump(&ramp, hold, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), &motion);
   start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
@@ -86,52 +89,54 @@ void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScen
   start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
 }
 
-void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& now) {
-  now.take_over(setup, road_asked(demand), t, demand.inputs);
-  if (setup.steered()) jump_to_guide_rates(setup, demand, now.scene_at(t), y);
-  decide_contact(setup, t, y, now);
+void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force) {
+  in_force.take_over(setup, road_asked(demand), t, demand.inputs);
+  if (setup.steered()) jump_to_guide_rates(setup, demand, in_force.scene_at(t), y);
+  decide_contact(setup, t, y, in_force);
 }
 
-void decide_contact(const Setup& setup, double t, double* y, InForce& now) {
-  const bool slips_on = now.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
-  if (!setup.sliding || slips_on) return decide_law(setup, t, y, now);
-  if (now.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
-  now.scene.contact = WHEEL_GRIPS;
-  decide_law(setup, t, y, now);
-  if (grip_left(setup, now, t, y) >= 0) return;
-  const WheelScene scene = now.scene_at(t);
+void decide_contact(const Setup& setup, double t, double* y, InForce& in_force) {
+  const bool slips_on = in_force.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
+  if (!setup.sliding || slips_on) return decide_law(setup, t, y, in_force);
+  if (in_force.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
+  in_force.scene.contact = WHEEL_GRIPS;
+  decide_law(setup, t, y, in_force);
+  if (grip_left(setup, in_force, t, y) >= 0) return;
+  // N depends on the horizontal force: a wheel that would lift off while it grips may press the road while it slides.
+  // It lifts off where the road would have to pull in both cases.
+  const WheelScene scene = in_force.scene_at(t);
   const bool lifts_off = rates_of(setup, scene, y).N < 0 && free_slip(scene, y).N < 0;
-  if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, now);
+  if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, in_force);
 }
 
-void decide_law(const Setup& setup, double t, const double* y, InForce& now) {
-  now.scene.friction = friction_at(setup, now.scene_at(t), now.inputs.braked, y);
+void decide_law(const Setup& setup, double t, const double* y, InForce& in_force) {
+  in_force.scene.friction = friction_at(setup, in_force.scene_at(t), in_force.inputs.braked, y);
 }
 
 WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y) {
   return friction_at(setup, scene, true, y);
 }
 
-void release(const Setup& setup, double t, const double* y, InForce& now) {
-  now.scene.friction = released_from(hold_at(setup, now.scene_at(t), y));
+void release(const Setup& setup, double t, const double* y, InForce& in_force) {
+  in_force.scene.friction = released_from(hold_at(setup, in_force.scene_at(t), y));
 }
 
-void begin_slide(const Setup& setup, double t, double* y, InForce& now) {
-  now.scene.contact = WHEEL_SLIDES;
-  WheelScene scene = now.scene_at(t);
+void begin_slide(const Setup& setup, double t, double* y, InForce& in_force) {
+  in_force.scene.contact = WHEEL_SLIDES;
+  WheelScene scene = in_force.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
-    now.scene.friction = law;
+    in_force.scene.friction = law;
     scene.friction = law;
     y[WHEEL_SLIP] = 2 * least_slip(setup, t);
     y[WHEEL_CHI] = first_direction(scene, y);
   };
-  if (may_be_held(setup, now, y)) {
+  if (may_be_held(setup, in_force, y)) {
     for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {  // the last where none agrees
       take(law);
       if (agrees(setup, scene, y)) break;
     }
   } else {
-    take(friction_at(setup, scene, now.inputs.braked, y));
+    take(friction_at(setup, scene, in_force.inputs.braked, y));
   }
 }
 
@@ -148,12 +153,12 @@ double least_slip(const Setup& setup, double t) {
   return setup.slip_scale * (part * setup.tolerance + roundings * solver::rounding_at(t) / setup.time_scale);
 }
 
-double grip_left(const Setup& setup, const InForce& now, double t, const double* y) {
+double grip_left(const Setup& setup, const InForce& in_force, double t, const double* y) {
   CONSTANT(double, rounding, 1e-12, "1", "of mu_max N");
   CONSTANT(double, rounding_of_zero, 1e-15, "weights", "of a tangential force of zero");
-  const WheelDynamics dynamics = dynamics_of(setup, now.scene_at(t), y);
+  const WheelDynamics dynamics = dynamics_of(setup, in_force.scene_at(t), y);
   const double* lambda = dynamics.lambda;
-  const double mu_max = std::fmax(now.road.mu_max, rounding_of_zero), full = setup.weight;
+  const double mu_max = std::fmax(in_force.road.mu_max, rounding_of_zero), full = setup.weight;
   const double X = lambda[0] / full / mu_max, Y = lambda[1] / full / mu_max;
   const double N = lambda[2] / full * (1 + rounding) + rounding_of_zero / mu_max;
   return N * std::fabs(N) - (X * X + Y * Y);

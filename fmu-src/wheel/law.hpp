@@ -46,7 +46,7 @@ inline bool is_limited(const Setup& setup, const Road& road) { return setup.slid
 
 // (t, y of a wheel that rolls) => N^2 - (lambda_t / mu_max)^2 over the weight squared; below zero too where the ground
 // pulls.
-double grip_left(const Setup& setup, const InForce& now, double t, const double* y);
+double grip_left(const Setup& setup, const InForce& in_force, double t, const double* y);
 
 // Whether two laws differ in kind, or in the side to which the wheel spins.
 inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }

@@ -24,12 +24,12 @@ void look_at_grip(Wheel& wheel, double t) {
   CONSTANT(double, looks, 16, "in a time scale", "often enough to see a swing, so seldom that it costs nothing");
   CONSTANT(double, dry_road, 1, "1", "the friction coefficient of a good tyre on a dry road");
   const Setup& setup = wheel.setup;
-  const InForce& now = wheel.run.in_force;
+  const InForce& in_force = wheel.run.in_force;
   t = std::fmin(t, wheel.solver.known_until());
-  if (t < wheel.run.grip_due || is_limited(setup, now.road)) return;
+  if (t < wheel.run.grip_due || is_limited(setup, in_force.road)) return;
   double y[max_states];
   wheel.solver.read(t, y);
-  const double mu = wheel_required_friction(dynamics_of(setup, now.scene_at(t), y).lambda);
+  const double mu = wheel_required_friction(dynamics_of(setup, in_force.scene_at(t), y).lambda);
   const bool exceeds = std::isfinite(mu) && mu > dry_road;
   wheel.run.grip_due = exceeds ? solver::never : t + setup.time_scale / looks;
   if (exceeds)
@@ -39,11 +39,11 @@ void look_at_grip(Wheel& wheel, double t) {
 }
 
 void warn_of_jam(const Wheel& wheel, const Instant& instant) {
-  const InForce& now = instant.in_force;
-  if (wheel.run.pending != Pending::set || !now.slides()) return;
-  if (margin_of(event_row(Event::jams), wheel.setup, now, instant.t, instant.y) < 0)
+  const InForce& in_force = instant.in_force;
+  if (wheel.run.pending != Pending::set || !in_force.slides()) return;
+  if (margin_of(event_row(Event::jams), wheel.setup, in_force, instant.t, instant.y) < 0)
     wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
-                       ending_of(now, Event::jams).text);
+                       ending_of(in_force, Event::jams).text);
 }
 
 void log_ending(Wheel& wheel, Event event) {
@@ -66,12 +66,12 @@ void log_ending(Wheel& wheel, Event event) {
                        most_logged);
 }
 
-Ending ending_of(const InForce& now, Event event) {
+Ending ending_of(const InForce& in_force, Event event) {
   Ending ending;
   NumberText limit;
   const EventRow& row = event_row(event);
   std::snprintf(ending.text, sizeof ending.text, "%s%s%s", row.ending, row.limit ? " = " : "",
-                row.limit ? limit.of({row.limit(now)}) : "");
+                row.limit ? limit.of({row.limit(in_force)}) : "");
   return ending;
 }
 

@@ -23,6 +23,6 @@ void log_ending(Wheel& wheel, Event event);
 struct Ending {
   char text[96];
 };
-Ending ending_of(const InForce& now, Event event);
+Ending ending_of(const InForce& in_force, Event event);
 
 }  // namespace wheel

@@ -32,10 +32,10 @@ bool is_known(const Wheel& w, double t) {
 
 // Whether what was set since the last step differs from what is in force.
 bool has_changed(const Wheel& w) {
-  const InForce& now = w.run.in_force;
+  const InForce& in_force = w.run.in_force;
   const double t = w.run.t;
   const double rounding = solver::rounding_at(std::fabs(w.demand.start_time) + std::fabs(t));
-  return now.road != road_asked(w.demand) || now.inputs.change_at(t, rounding, w.demand.inputs);
+  return in_force.road != road_asked(w.demand) || in_force.inputs.change_at(t, rounding, w.demand.inputs);
 }
 
 struct Result {
@@ -99,12 +99,12 @@ Shape shape_of(const Record& record) {
 // Whether the motion repeats and is unfolded, on an orbit of this run or of an earlier one of the same shape. False:
 // the solver has to step through the motion.
 bool enter_orbit(Wheel& w) {
-  const InForce& now = w.run.in_force;
-  const bool acted_on = now.law().kind != WHEEL_FRICTIONLESS || now.inputs.loaded || now.road.slope != 0;
+  const InForce& in_force = w.run.in_force;
+  const bool acted_on = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.inputs.loaded || in_force.road.slope != 0;
   // By a carrier that turned at the start and does not any more.
   const bool turned =
       w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.initial_state);
-  if (!w.setup.unfolds || acted_on || now.slides() || turned) return false;
+  if (!w.setup.unfolds || acted_on || in_force.slides() || turned) return false;
   Record ahead = static_cast<const Record&>(w);  // events on the orbit are in force for it alone, not yet for the run
   const Shape shape = shape_of(w);
   const orbit::FreeMotion motion = {problem_of(ahead),

@@ -15,24 +15,24 @@ namespace {
 const Record& record_of(const void* owner) { return *static_cast<const Record*>(owner); }
 
 // (t) => the scene. Evaluations ask for it: where no input varies, it is not copied.
-const WheelScene& scene_at(const InForce& now, double t, WheelScene& room) {
-  return now.inputs.varies ? room = now.scene_at(t) : now.scene;
+const WheelScene& scene_at(const InForce& in_force, double t, WheelScene& room) {
+  return in_force.inputs.varies ? room = in_force.scene_at(t) : in_force.scene;
 }
 
 // (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = record_of(owner).setup;
-  const InForce& now = record_of(owner).run.in_force;
+  const InForce& in_force = record_of(owner).run.in_force;
   WheelScene room;
-  const WheelScene& scene = scene_at(now, t, room);
+  const WheelScene& scene = scene_at(in_force, t, room);
   const WheelFormulation& formulation =
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
   const double N = formulation.derivative(&scene, y, y_dot);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
   if (!std::isfinite(sum)) return std::numeric_limits<double>::quiet_NaN();
-  return least_margin(setup, now, y, N);
+  return least_margin(setup, in_force, y, N);
 }
 
 // (theta, heading_rate: |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2
@@ -51,19 +51,19 @@ double rounding_of_rates(double theta, double heading_rate, bool slides) {
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = record_of(owner).setup;
-  const InForce& now = record_of(owner).run.in_force;
+  const InForce& in_force = record_of(owner).run.in_force;
   const double theta = y[WHEEL_THETA], spin = y[WHEEL_OMEGA_3];
   CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
   CONSTANT(double, width, 10, "omega_s sqrt(tolerance)", "error of the spin in a regularized law, of second order");
   const double slow = share * setup.tolerance;
   const double heading_rate =
       setup.is_multibody() ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
-  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading_rate, now.slides()));
+  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading_rate, in_force.slides()));
   const double tolerance = std::fmax(slow * share_at(setup, spin), least);
   double scales[max_states];
   scales_at(setup, spin, scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (now.law().kind != WHEEL_REGULARIZED) return;
+  if (in_force.law().kind != WHEEL_REGULARIZED) return;
   const double part = width * std::sqrt(tolerance);
   const double layer = part * setup.omega_s + tolerance * std::fabs(spin);
   weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], layer) + rounding * std::fabs(spin));
@@ -111,27 +111,27 @@ int extremes(void* owner, double t_lo, double t_hi, double* instants) {
 
 solver::Problem problem_of(Record& record) {
   const Setup& setup = record.setup;
-  const InForce& now = record.run.in_force;
+  const InForce& in_force = record.run.in_force;
   solver::Problem problem = {};
-  const bool few = formulation_of(setup, now.scene.contact).states == WHEEL_REDUCED_STATES;
+  const bool few = formulation_of(setup, in_force.scene.contact).states == WHEEL_REDUCED_STATES;
   problem.states = few ? WHEEL_REDUCED_STATES : max_states;
   problem.owner = &record;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
   problem.weights = few ? weights<WHEEL_REDUCED_STATES> : weights<max_states>;
-  if (now.inputs.varies) problem.extremes = extremes;
+  if (in_force.inputs.varies) problem.extremes = extremes;
   CONSTANT(double, near, 0.1, "weights, or rad from lying flat", "what N or theta may do between two stages of a step");
   CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
   problem.near = near;
   problem.longest_step = setup.longest_step;
-  if (now.law().kind == WHEEL_REGULARIZED) {
+  if (in_force.law().kind == WHEEL_REGULARIZED) {
     problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
-    const double rate = rates_of(setup, now.scene_at(record.run.t), record.run.y).y_dot[WHEEL_OMEGA_3];
+    const double rate = rates_of(setup, in_force.scene_at(record.run.t), record.run.y).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
-  if (now.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
+  if (in_force.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};
   for (const EventRow& row : event_rows)
-    if (row.can_occur(setup, now)) {
-      problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, row.state(now)});
+    if (row.can_occur(setup, in_force)) {
+      problem.watch({static_cast<int>(row.event), margin, row.quick_value != nullptr, row.state(in_force)});
     }
   return problem;
 }
@@ -145,9 +145,9 @@ Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
   return follow_event(row, record.setup, t, state, record.run.in_force);
 }
 
-solver::Method method_of(const Setup& setup, const InForce& now) {
+solver::Method method_of(const Setup& setup, const InForce& in_force) {
   const bool cvode = setup.method == adams_method || setup.method == bdf_method;
-  if (now.slides() || (cvode && now.law().kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
+  if (in_force.slides() || (cvode && in_force.law().kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

@@ -6,8 +6,8 @@
 namespace wheel {
 namespace {
 
-WheelGround ground_of(const InForce& now) {
-  return now.is_below(Event::lost_contact) ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
+WheelGround ground_of(const InForce& in_force) {
+  return in_force.is_below(Event::lost_contact) ? WHEEL_GROUND_PULLS : WHEEL_GROUND_PRESSES;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct Header {
 void visit(support::Archive& archive, Record& record) {
   Demand& demand = record.demand;
   Run& run = record.run;
-  InForce& now = run.in_force;
+  InForce& in_force = run.in_force;
   for (double& parameter : demand.parameters) archive.anything(parameter);
   archive.number(demand.start_time);
   archive.range(demand.stop_time, -archive.greatest, solver::never);
@@ -43,20 +43,21 @@ void visit(support::Archive& archive, Record& record) {
   archive.count(run.can_slide, 0, 1);
   archive.count(run.phase, 0, phase_count - 1);
   archive.count(run.ended_by, 0, event_count - 1);
-  for (double* x : {&now.road.s, &now.road.mu_max, &now.road.mu_slide}) archive.range(*x, 0, archive.greatest);
-  archive.range(now.road.slope, 0, upright);
-  archive.range(now.road.slope_direction, -largest_angle, largest_angle);
-  WheelFriction& law = now.scene.friction;
+  for (double* x : {&in_force.road.s, &in_force.road.mu_max, &in_force.road.mu_slide})
+    archive.range(*x, 0, archive.greatest);
+  archive.range(in_force.road.slope, 0, upright);
+  archive.range(in_force.road.slope_direction, -largest_angle, largest_angle);
+  WheelFriction& law = in_force.scene.friction;
   archive.count(law.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive.range(law.sigma, -1, 1);
-  archive.count(now.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
-  archive.number(now.inputs.origin);
-  for (auto& input : now.inputs.c) archive.numbers(input, max_order + 1);
+  archive.count(in_force.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  archive.number(in_force.inputs.origin);
+  for (auto& input : in_force.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
   demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(run.y, max_states);
   for (int i = 0; i < event_count; ++i) {
-    archive.count(now.below[i], 0, 1);
+    archive.count(in_force.below[i], 0, 1);
     archive.count(run.logged[i], 0, 1);
   }
   archive.tally(run.transitions);
@@ -75,10 +76,11 @@ bool complete(Record& record) {
   setup = setup_of(demand, run.can_slide);
   run.y_time = run.t;
   if (setup.model_exchange) wheel_reduced_state(run.x, run.y);
-  InForce& now = run.in_force;
-  now.take_over(setup, Road(now.road), now.inputs.origin, Inputs(now.inputs).c);
-  now.scene.friction.omega_s = now.law().kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
-  return setup.sliding || !now.slides();
+  InForce& in_force = run.in_force;
+  // Copies, because take_over writes over what it reads.
+  in_force.take_over(setup, Road(in_force.road), in_force.inputs.origin, Inputs(in_force.inputs).c);
+  in_force.scene.friction.omega_s = in_force.law().kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  return setup.sliding || !in_force.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {

@@ -31,7 +31,8 @@ void note_changes(Wheel& wheel, const InForce& before, Event by) {
                          old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
   }
   const bool slid = before.slides(), slides = run.in_force.slides();
-  if (slides == slid && !(slides && by == Event::slip_ends)) return;
+  const bool anew = slides && by != Event::none && event_row(by).slides_anew;
+  if (slides == slid && !anew) return;
   ++run.transitions;
   wheel.reporter.log(Topic::event, "t = %s s: the wheel %s.", t,
                      !slides ? "stops sliding"

@@ -8,7 +8,7 @@ namespace wheel {
 // The run stands at an event that does not end it: what follows is in force, counted and logged.
 solver::Consequence pass_event(Wheel& wheel, Event event);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
-// spin, and between rolling and sliding. A wheel that still slides where its slip ends has started to slide anew.
+// spin, and between rolling and sliding.
 void note_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
 
 }  // namespace wheel

@@ -15,9 +15,10 @@ namespace {
 // Whether the initial state is inside the model, with a message: no force of the ground holds a wheel that jams, and
 // values that are sound one by one can have products that are not finite.
 bool check_start(const Record& r, Reading& start, const Reporter& reporter) {
-  const InForce& now = r.run.in_force;
-  if (now.slides() && margin_of(event_row(Event::jams), r.setup, now, 0, r.run.y) < 0)
-    return reporter.check(false, "At the start the wheel %s: the run ends there.", ending_of(now, Event::jams).text);
+  const InForce& in_force = r.run.in_force;
+  if (in_force.slides() && margin_of(event_row(Event::jams), r.setup, in_force, 0, r.run.y) < 0)
+    return reporter.check(false, "At the start the wheel %s: the run ends there.",
+                          ending_of(in_force, Event::jams).text);
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
   for (const double force : start.dynamics().lambda) sum += force;
   const auto set = [&](variable::Place v) { return Digits{r.demand.parameters[v], 3}; };

@@ -10,7 +10,8 @@
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
 //   setup, run                    what follows from the parameters; what is in force, and how far the run has come
 //   law, events                   how friction and contact are decided; the table of what can happen
-//   logbook, posed_problem        messages and counts of events; what the solver asks
+//   logbook, transitions          messages; events that a run passes, and changes of friction and contact
+//   posed_problem                 what the solver asks
 //   motion, exchange              one communication step; model exchange
 //   slopes, snapshot              derivatives of the variables; the state as bytes
 #pragma once

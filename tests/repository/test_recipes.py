@@ -44,14 +44,14 @@ double short_of_line(const Setup& setup, const InForce&, double, const double* y
         """    {.event = Event::crosses_line,
      .can_occur = has_line,
      .value = short_of_line,
-     .observed = "the wheel crosses the line"},
+     .observation = "the wheel crosses the line"},
 """,
     ],
 }
 # In front of what a new variable, member, assignment, name, function and row stand.
 PLACES = {
     "modelDescription.xml": ['    <ScalarVariable name="F_X"'],
-    "fmu-src/wheel/setup.hpp": ["};\n\n// (parameters, tolerance, kind) => setup"],
+    "fmu-src/wheel/setup.hpp": ["};\n\n// (parameters, tolerance, kind; whether the wheel can slide) => setup"],
     "fmu-src/wheel/setup.cpp": ["  return setup;\n}\n\nvoid scales_at"],
     "fmu-src/wheel/run.hpp": ["  count\n};"],
     "fmu-src/wheel/events.cpp": [
@@ -139,7 +139,7 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     description.write_text(numbered(description.read_text(encoding="utf-8"), measured(fmu)), encoding="utf-8")
     subprocess.run(make, check=True, capture_output=True)
     rows = [blocks["fmu-src/wheel/events.cpp"][1] for blocks in events]
-    texts = [re.search(r'observed = "([^"]*)', row)[1] for row in rows]
+    texts = [re.search(r'observation = "([^"]*)', row)[1] for row in rows]
     library = Library.unpacked(fmu)
     yield Patched(root, fmu, library, *texts)
     library.remove()
