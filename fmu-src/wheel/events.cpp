@@ -28,8 +28,8 @@ bool can_change_spin(const Setup& setup, const InForce& in_force) {
   return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
 }
 
-// (t, y) => how far the mode of friction is from its end: rolling, omega_z over the scale of rates; held, the capacity
-// that holding leaves; without friction, the brake that asks for a law
+// (t, y) => how far the mode of friction is from its end: of a wheel that rolls, omega_z over the scale of rates; of
+// one that is held, the reserve of holding; without friction, zero until a brake is set, which asks for a law
 double spin_left(const Setup& setup, const InForce& in_force, double t, const double* y) {
   const WheelFriction& law = in_force.law();
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
@@ -140,7 +140,7 @@ constexpr bool is_sound(const EventRow& row) {
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
 
-// Of a margin. Extreme loads on a tiny wheel would overflow, and a state holds finite numbers alone.
+// Extreme loads on a tiny wheel would overflow, but a saved state holds margins as finite numbers.
 constexpr double largest_margin = 1e100;
 
 // (value) => margin: below zero where the event has occurred

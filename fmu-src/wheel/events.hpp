@@ -1,5 +1,5 @@
-// The one list of what can happen at an instant that is not known beforehand: when it can occur, its margin, and what
-// follows. Stepping, the unfolded wheel, model exchange and snapshots work from this table (events.cpp).
+// The one list of events, which happen at instants that are not known beforehand: when each can occur, its margin, and
+// what follows. Stepping, the unfolded wheel, model exchange and snapshots work from this table (events.cpp).
 #pragma once
 
 #include "constant.hpp"
@@ -15,17 +15,16 @@ inline int all_states(const InForce&) { return -1; }
 
 // A row by itself is enough for the solver and for snapshots. These rows are named elsewhere too:
 //   spin_changes   in exchange.cpp: a spin that the caller has set is not this event
-//   lies_flat      in exchange.cpp: its margin alone is asked for beyond flat
-//   lost_contact   in run.cpp and exchange.cpp: it decides the side of the ground
+//   lies_flat      in exchange.cpp: its margin alone is asked for beyond flat; in logbook.cpp: a hint
+//   lost_contact   in run.cpp and exchange.cpp: it decides the side of the ground; in logbook.cpp: a hint
 //   jams           in motion.cpp, wheel.cpp and logbook.cpp: a start or a road at which the wheel jams
 struct EventRow {
   Event event;
   // Whether it can occur, given what is in force.
   bool (*can_occur)(const Setup& setup, const InForce& in_force);
   // A row has one of two values. Each is smooth, scaled to about one, and falls below zero at the event. The quick one
-  // depends on the state and on the normal force N, which come with the rates: the solver looks at it only where it
-  // comes near zero. The value of an observed event changes its sign again and again. The value of a brake that is not
-  // in use is zero until one is set.
+  // depends on the state and on the normal force N alone, which come with the rates: the solver looks at it only where
+  // it comes near zero. The value of an observed event changes its sign again and again.
   double (*value)(const Setup& setup, const InForce& in_force, double t, const double* y) = nullptr;
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all.
@@ -33,8 +32,8 @@ struct EventRow {
   double rounding = 0;            // where there is an observation: a value beyond zero by less does not count
   bool in_model_exchange = true;  // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
-  // Where it bends the motion: what is in force from here on, and the state, of which it sets a rate that is exactly
-  // zero, or the slip.
+  // If the event bends the motion, this function decides what is in force from here on. In y it sets a rate that has
+  // become exactly zero, or the slip.
   void (*follow)(const Setup& setup, double t, double* y, InForce& in_force) = nullptr;
   bool bends_friction = false;  // it bends the motion where friction acts
   bool slides_anew = false;     // a wheel that slides after it has started to slide anew
@@ -52,9 +51,9 @@ inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends 
 // Logged where it first occurs in a run.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observation && !ends_run(row, setup); }
 
-// An event that does not end the run: what follows is in force. One that is observed alone changes nothing else. A run
-// passes it by pass_event (transitions.hpp), which counts and logs too; follow_on_orbit (posed_problem.hpp) follows it
-// ahead of the run; and after a motion in which none was followed, find_below finds those that are observed.
+// Puts in force what follows from an event that does not end the run. An event that is only observed changes nothing
+// else. pass_event (transitions.hpp) does it for a run, and counts and logs too. follow_on_orbit (posed_problem.hpp)
+// does it ahead of the run. After a motion in which no event was followed, find_below finds those that are observed.
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& in_force);
 
 // (row, t, y) => its margin

@@ -60,8 +60,8 @@ bool has_occurred(const EventRow& row, const Record& r) {
   return margin_at(row, r) <= 0 || margin_at(row, r, soon * r.setup.time_scale) <= 0;
 }
 
-// Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. Else
-// the caller has set it, and it is kept.
+// Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. If
+// not, the caller has set the spin, and it is kept.
 bool is_led(const Record& r) {
   const WheelScene scene = r.run.in_force.scene_at(r.run.t);
   const double spin = r.run.y[WHEEL_OMEGA_3] / r.setup.rate_scale;
@@ -79,7 +79,7 @@ Event ending_at(const Record& r) {
   return ending;
 }
 
-// What `decide` does, in y. omega_z is the state that an event changes.
+// Decides in y: of the state, an event changes omega_z alone.
 bool decide_anew(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
@@ -87,20 +87,21 @@ bool decide_anew(Wheel& w) {
   const double spin = omega_z;
   const bool led = is_led(w);
   if (before.law().kind == WHEEL_HELD && led) omega_z = 0;
-  const auto ends_here = [&] {
+  const auto end_if_due = [&] {
     const Event ending = ending_at(w);
     if (ending != Event::none) end_run(w, ending);
     return ending != Event::none;
   };
-  if (ends_here()) return false;
+  if (end_if_due()) return false;
   for (const EventRow& row : event_rows)
     if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
+  const InForce passed = run.in_force;
   if (const EventRow& spin_changes = event_row(Event::spin_changes); led && has_occurred(spin_changes, w))
     follow_event(spin_changes, w.setup, run.t, run.y, run.in_force);
   else
     decide_law(w.setup, run.t, run.y, run.in_force);
-  note_changes(w, before);
-  if (ends_here()) return false;  // under the law that was decided
+  note_changes(w, passed);
+  if (end_if_due()) return false;  // under the law that was decided
   return omega_z != spin || differ(before.law(), run.in_force.law()) ||
          before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
 }

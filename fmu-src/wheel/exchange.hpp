@@ -1,5 +1,5 @@
-// Model exchange. The caller's solver moves the states x (wheel_equations.h), from which y follows; an input acts from
-// the instant at which it is set; the law of friction is decided anew at events, and where a state or the road is set.
+// Model exchange. The caller's solver moves the states x (wheel_equations.h), from which y follows. An input acts from
+// the instant at which it is set. The law of friction is decided anew at events, and where a state or the road is set.
 #pragma once
 
 #include "wheel.hpp"
@@ -14,8 +14,8 @@ int place_in_x(unsigned variable);
 // (place in x) => that of the state of y to which it belongs, and with it its scale
 int place_in_y(int in_x);
 
-// What was set is in force at once, except for the law, which the event mode decides. Outside of it another road asks
-// for another law at once.
+// What was set is in force at once, except for the law, which is decided in event mode. Outside of event mode, another
+// road asks for another law at once.
 void act_at_once(Wheel& wheel);
 // To event mode or continuous-time mode.
 void enter(Wheel& wheel, Phase mode);
@@ -34,12 +34,12 @@ void read_derivatives(Wheel& wheel, double* x_dot);
 void read_indicators(Wheel& wheel, double* z);
 bool has_event(Wheel& wheel);
 
-// Event mode: the law that holds from here on. True where the motion bends here, a state or the law: some solvers go on
-// from a step that they took under the old law, unless the states are called new. Where the model ends here, the run
-// does.
+// Event mode decides the law that holds from here on. True where the motion bends here, by a state or by the law: some
+// solvers go on from a step that they took under the old law, unless they read that the states are new. Where the model
+// ends here, the run ends.
 bool decide(Wheel& wheel);
 
-// Whether a run can begin: model exchange has no way to report an end at the start. Else a message.
+// Whether a run can begin; if not, a message is logged. Model exchange has no way to report an end at the start.
 bool starts_inside(const Wheel& wheel);
 
 }  // namespace wheel

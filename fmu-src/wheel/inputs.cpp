@@ -1,4 +1,4 @@
-// Input polynomials and what is asked of them.
+// Values, rates, extremes and changes of input polynomials.
 #include "inputs.hpp"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ Span span_of(const double (&c)[max_order + 1], double tau) {
   return span;
 }
 
-// By the bits but the sign: asked at each step, so without a branch.
+// Each step asks for it, so it tests bits without a branch. The sign does not count: -0 is zero.
 bool varies(const Polynomials& inputs) {
   std::uint64_t bits = 0;
   for (const auto& c : inputs)
@@ -135,7 +135,7 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   return found;
 }
 
-// Between two extremes the polynomial passes zero once. Halves until
+// Between two extremes the polynomial passes zero at most once. Halves until
 //   no time lies between the ends.
 double Inputs::corner(double t, double until) const {
   const auto brakes = [&](double at) { return value_at(c[brake_input], at - origin) > 0; };

@@ -1,5 +1,5 @@
-// The nine inputs as polynomials of time over one communication step: the external column {F} of (15) besides the
-// weight, the brake, and how the wheel carrier of a guided wheel turns.
+// The nine inputs are polynomials of time over one communication step: the external column {F} of (15) without the
+// weight, the brake, and the rates of the wheel carrier of a guided wheel.
 //
 // F_X, F_Y, F_Z [N] at O along the fixed axes; M_1, M_2, M_3 [N m] along e1, e2, e3; M_brake [N m], the capacity of the
 // dry brake; psi_dot_guide, theta_dot_guide [rad/s], whose slopes are the load's `guide`. What the caller asks for is
@@ -40,14 +40,14 @@ struct Inputs {
   bool guides = false;  // the carrier's rates or one of their derivatives are not zero
 
   void take_over(double t, const Polynomials& asked);
-  // Whether `asked` differs from the polynomials in force, seen from t on, by more than the rounding of their values
-  // and of t, s: a polynomial that a caller cuts into many steps goes on as one.
+  // Whether `asked`, seen from t on, differs from the polynomials in force by more than the rounding of their values
+  // and of t, s. So a polynomial that a caller cuts into many steps goes on as one.
   bool change_at(double t, double rounding, const Polynomials& asked) const;
   void set_load_at(double t, WheelLoad& load) const;
-  // The capacity of a brake is not negative: at zero its rate is not either, and below zero of its polynomial it is
-  // zero.
+  // The rates of the load at t. A brake's capacity is never negative: where its polynomial is zero, the rate is not
+  // negative either, and where it is below zero, the rate is zero.
   WheelLoad load_rate_at(double t) const;
-  // (input, t) => its value, of a brake not below zero
+  // (input, t) => its value; a brake's is not below zero
   double value_of(int input, double t) const;
   // (t_lo, t_hi) => instants strictly between them, ascending, at which an input, or the acceleration of the carrier,
   // has an extreme; returns their number

@@ -1,7 +1,7 @@
 // The laws of the contact: rolling resistance, the start and the end of a slide.
 //
-// decide_contact: does the wheel grip? If so, decide_law: the law of friction. If not, begin_slide: the direction of
-// the slip and the law, each of which depends on the other.
+// decide_contact asks whether the wheel grips. If so, decide_law chooses the law of friction. If not, begin_slide
+// chooses the direction of the slip and the law, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>
@@ -28,8 +28,8 @@ WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool brak
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
-// Whether the laws of a wheel that starts to slide are tried one by one, held first: without spin, with rolling
-// friction or brake.
+// Whether the laws of a wheel that starts to slide are tried one by one, held first. That is where it has no spin, and
+// rolling friction or a brake.
 bool may_be_held(const Setup& setup, const InForce& in_force, const double* y) {
   const bool some = in_force.road.s != 0 || in_force.inputs.braked;
   return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;

@@ -1,6 +1,6 @@
 // What acts on the wheel from an instant on: road and inputs, the law of rolling resistance after Filippov, and whether
-// the wheel rolls or slides after Coulomb. Results depend on the arguments alone; those that decide write contact and
-// law in `in_force`, and the slip in y.
+// the wheel rolls or slides after Coulomb. Results depend on the arguments alone. Functions that decide write contact
+// and law in `in_force`, and the slip in y.
 #pragma once
 
 #include "constant.hpp"
@@ -8,40 +8,42 @@
 
 namespace wheel {
 
-// (demand, t, y) => in_force, y: what the caller has set is in force from t on, and with it the contact and the law of
-// friction. In y it writes the slip, and what a jump of the carrier's rates changes.
+// (demand, t, y) => in_force, y. From t on, what the caller has set is in force, and with it the contact and the law of
+// friction that follow. In y the slip is written, and the rates that a jump of the carrier changes.
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // (y) => y of a wheel whose carrier has always turned at the rates asked for
 void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y);
 
-// (t, y) => contact, law, slip in y: a slip above the least goes on; else the wheel rolls where it can, and begins to
-// slide where it cannot, unless it lifts off.
+// (t, y) => contact, law, slip in y. A slip above the least goes on. Else the wheel rolls where it can; where it
+// cannot, it begins to slide, unless it lifts off.
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
-// (t, y) => law of friction. At omega_z = 0 after Filippov: held where the moment that holds the wheel is within
-// s N + M_brake, else rolling against that moment. A regularized law is decided by the place of omega_z in its layer.
+// (t, y) => law of friction. At omega_z = 0 the exact law follows Filippov: the wheel is held where the moment that
+// holds it is within s N + M_brake, else it rolls against that moment. A regularized law depends on whether omega_z
+// lies in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force);
 
-// (scene, y) => the law with a brake in use, whatever its capacity is
+// (scene, y) => the law where a brake is in use, even if its capacity is zero
 WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y);
 
 // (t, y) => law of friction of a wheel that friction and brake can no longer hold
 void release(const Setup& setup, double t, const double* y, InForce& in_force);
 
-// (t, y without slip) => contact, law, slip in y: the wheel starts to slide by Coulomb's law, in the direction in which
-// it lets a slip grow and stay.
+// (t, y without slip) => contact, law, slip in y. The wheel starts to slide, in the direction in which Coulomb's law
+// lets a slip grow and stay.
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force);
 
-// (scene, y of a wheel that slides) => direction in which a slip begins, rad. Without one the event that ends the run
-// follows at once, or the ground begins to pull: where it pulls, the slip begins along the forces.
+// (scene, y of a wheel that slides) => direction in which a slip begins, rad. Where Coulomb's law gives none, an event
+// that ends the run follows at once, or the ground begins to pull; then the slip begins along the forces.
 double first_direction(const WheelScene& scene, const double* y);
 
 // (t) => m/s, the slip at which a slide ends; it begins with twice as much. Below it the direction of the slip turns
 // ever faster. It is a small part of the tolerance, and large enough for the digits of an instant.
 double least_slip(const Setup& setup, double t);
 
-// Whether the road limits the force of rolling: mu_max = 0 is no limit, and of a wheel that can slide no friction.
+// Whether the road limits the force on a rolling wheel. mu_max = 0 means no limit, but no friction if the wheel can
+// slide.
 inline bool is_limited(const Setup& setup, const Road& road) { return setup.sliding || road.mu_max > 0; }
 
 // (t, y of a wheel that rolls) => N^2 - (lambda_t / mu_max)^2 over the weight squared; below zero too where the ground
@@ -51,8 +53,8 @@ double grip_left(const Setup& setup, const InForce& in_force, double t, const do
 // Whether two laws differ in kind, or in the side to which the wheel spins.
 inline bool differ(const WheelFriction& a, const WheelFriction& b) { return a.kind != b.kind || a.sigma != b.sigma; }
 
-// (scene, y) => the moment that holds the wheel, N m, and s N + M_brake - |tau|, N m, which is left; where rounding
-// alone decides, the wheel stays held.
+// (scene, y) => the moment tau that would hold the wheel, N m, and the reserve s N + M_brake - |tau|, N m. It includes
+// the rounding of both, so that a wheel stays held where rounding alone decides.
 struct Hold {
   double tau, reserve;
 };

@@ -1,5 +1,5 @@
-// How a run moves on by one communication step: `advance_by_stages` lists the stages, the functions before it are the
-// stages. Times in s on the clock of the run.
+// A run moves on by one communication step. `advance_by_stages` lists the stages, and the functions before it are the
+// stages. Times are in s on the clock of the run.
 #include "motion.hpp"
 
 #include <algorithm>
@@ -47,8 +47,8 @@ struct Result {
 Result run_ends(Event event) { return {Progress::ended, event}; }
 Result failed(const char* reason = nullptr) { return {Progress::failed, Event::none, reason}; }
 
-// From here on the solver steps through the motion: it starts at the present instant, from nothing or, where it stepped
-// before, anew, and goes on counting.
+// From here on the solver steps through the motion. It starts at the present instant: from nothing, or where it has
+// stepped before, anew with its counts.
 Result start_solver(Wheel& w) {
   solver::Solver& solver = w.solver;
   const bool again = w.run.phase == Phase::stepping;
@@ -60,10 +60,10 @@ Result start_solver(Wheel& w) {
   return done ? Result() : failed();
 }
 
-// Stage 1: what was set since the last step is in force. From an orbit the motion goes on by steps: they start from
-// nothing, so the restart is counted here, and the first one is as long as any. A motion that is stepped through starts
-// anew, most often under an input that is set at every step: the first step is no longer than the time since the last
-// change.
+// Stage 1: what was set since the last step is in force. From an orbit the motion goes on by steps. The solver then
+// starts from nothing, so the restart is counted here, and its first step has no limit. A motion that is stepped
+// through already starts anew, most often because an input is set at every step: the first step is no longer than the
+// time since the last change.
 Result apply_demand(Wheel& w) {
   Run& run = w.run;
   const bool changed = run.pending != Pending::nothing && has_changed(w);
@@ -83,7 +83,7 @@ Result apply_demand(Wheel& w) {
   return result;
 }
 
-// The numbers that the motion on an orbit follows from.
+// The numbers that determine the motion on an orbit.
 using Shape = std::array<double, first_input + 2>;
 static_assert(std::tuple_size_v<Shape> <= orbit::most_shape);
 Shape shape_of(const Record& record) {
@@ -96,12 +96,12 @@ Shape shape_of(const Record& record) {
   return shape;
 }
 
-// Whether the motion repeats and is unfolded, on an orbit of this run or of an earlier one of the same shape. False:
-// the solver has to step through the motion.
+// Enters the orbit of this run, or of an earlier one of the same shape. False where the motion does not repeat: the
+// solver has to step through it.
 bool enter_orbit(Wheel& w) {
   const InForce& in_force = w.run.in_force;
   const bool acted_on = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.inputs.loaded || in_force.road.slope != 0;
-  // By a carrier that turned at the start and does not any more.
+  // A carrier that turned at the start, and has stopped since, has turned the wheel away from its initial state.
   const bool turned =
       w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.initial_state);
   if (!w.setup.unfolds || acted_on || in_force.slides() || turned) return false;
@@ -147,8 +147,8 @@ double stop_of(const Wheel& w, double t) {
   return std::fmin(t, inputs.corner(reached + solver::rounding_at(reached) + met * ahead, reached + ahead));
 }
 
-// Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): of a small slip time has too few digits for the
-// rest.
+// Near a jam N grows as 1 / sqrt(time left), and by 1 / sqrt(|u|): where the slip is small, time has too few digits for
+// the rest of the way.
 bool is_about_to_jam(const Wheel& w) {
   CONSTANT(double, little_room, 1e-2, "1", "WheelSlip.room, below which a step that fails has met the jam");
   if (!w.run.in_force.slides()) return false;
@@ -216,7 +216,7 @@ void arrive(Wheel& w, double t) {
   w.run.pending = Pending::held_inputs;
 }
 
-// The state is that before the step, and stays so.
+// A step has failed: the state is that before the step, and stays so.
 void fail(Wheel& w, const Run& before, const char* failure) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
   update_state(w);

@@ -14,8 +14,8 @@ enum class Progress {
 // (t: s, clock of the run)
 [[nodiscard]] Progress advance(Wheel& wheel, double t);
 
-// (h: s) => the first input whose polynomial would leave its bounds in the next step, of h, the value that it would
-// reach, and the limit; no limit: none. A brake falls to zero at most.
+// (h: s, length of the next step) => the first input whose polynomial would leave its bounds in it, the value that it
+// would reach, and the limit. Without a limit there is none. A brake whose polynomial falls below zero stays at zero.
 struct Excess {
   unsigned input;
   double value;

@@ -1,4 +1,4 @@
-// What the solver asks: right-hand side, error weights, watched functions.
+// Answers to the solver: right-hand side, error weights, watched functions.
 #include "posed_problem.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 const Record& record_of(const void* owner) { return *static_cast<const Record*>(owner); }
 
-// (t) => the scene. Evaluations ask for it: where no input varies, it is not copied.
+// (t) => the scene, which every evaluation asks for. It is copied only where an input varies.
 const WheelScene& scene_at(const InForce& in_force, double t, WheelScene& room) {
   return in_force.inputs.varies ? room = in_force.scene_at(t) : in_force.scene;
 }
@@ -45,9 +45,12 @@ double rounding_of_rates(double theta, double heading_rate, bool slides) {
   return std::numeric_limits<double>::epsilon() * std::fmax(remains * theta / angle_from_flat(theta), cancels);
 }
 
-// (share, y) => weights. The states' rounding is a floor: no step has to be more exact than the numbers can express.
-// The regularized law turns errors of omega_z into moments over its width omega_s: the spin must be accurate to a
-// fraction of that width.
+// (share, y) => weights[i] = 1 / (tolerance scale_i + rounding |y_i|), where
+//   tolerance   share * setup.tolerance * share_at(spin), but at least the rounding of states and rates: no step has to
+//               be more exact than the numbers can express;
+//   scale_i     the range of the state (scales_at).
+// A regularized law turns errors of omega_z into moments, over its width omega_s. There the spin must be accurate to a
+// part of that width too.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = record_of(owner).setup;
@@ -82,8 +85,9 @@ void slopes_of_turning(void* owner, double t, const double* y, std::span<const d
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
-// (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law, from its rates under the whole moment
-// forward and backward; zero where the ground pulls and no brake acts. `others`: of each rate by that of omega_z.
+// (t, y, omega_z) => slopes of omega_z_dot by omega_z under the regularized law. They follow from the rates under the
+// whole moment forward and backward, and are zero where the ground pulls and no brake acts. `others` are the changes of
+// each rate by that of omega_z.
 void slopes_of_spin(void* owner, double t, const double* y, std::span<const double> omega_z, double* slopes,
                     double* others) {
   const Setup& setup = record_of(owner).setup;

@@ -7,8 +7,15 @@
 
 namespace wheel {
 
-// From the first parameter to the end: from the phase follows what can be read, what a step does, and which functions
-// of FMI may be called (fmi/legality.hpp). Their order counts: the three functions below compare.
+// From the first parameter to the end. The phase decides what can be read, what a step does, and which functions of FMI
+// may be called (fmi/legality.hpp). The order counts: the three functions below compare.
+//
+//   created -> initializing <-> faulty, initial     a parameter is set; the parameters are checked
+//   initial -> at_start -> stepping or unfolded     co-simulation; a step with new inputs ends an unfolded motion
+//   initial -> event_mode <-> continuous_time       model exchange
+//   any of these -> ended, closed, broken           and without_start, where initialization fails
+//
+// A reset leads back to `created`, and a restored state to the phase in which it was saved.
 enum class Phase : int {
   created,          // parameters are being set
   initializing,     // initialization has begun; no initial state belongs to the present parameters yet
@@ -30,8 +37,8 @@ constexpr bool has_begun(Phase p) { return p >= Phase::at_start; }
 constexpr bool is_running(Phase p) { return p >= Phase::at_start && p <= Phase::continuous_time; }
 constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::without_start; }
 
-// What can happen at an instant that is not known beforehand: the names of the rows of the table in events.cpp. Of two
-// at the same instant the later one counts.
+// What can happen at an instant that is not known beforehand. These are the names of the rows of the table in
+// events.cpp. Of two events at the same instant, the one that stands later here counts.
 enum class Event : int {
   none,
   changes_layer,  // omega_z enters or leaves the layer of a regularized law
@@ -56,22 +63,22 @@ inline Road road_asked(const Demand& demand) {
   return {v[variable::s], v[variable::mu_max], v[variable::mu_slide], v[variable::slope], v[variable::slope_direction]};
 }
 
-// What acts on the wheel, and the scene that follows from it for the equations. Plain numbers; while a run goes on,
-// each has one writer.
+// What acts on the wheel, and the scene that follows from it for the equations. These are plain numbers, and while a
+// run goes on, each has one writer.
 struct InForce {
-  // By take_over: the road as it was asked for, and the inputs.
+  // Written by take_over: the road as it was asked for, and the inputs.
   Road road = {};
   Inputs inputs;
-  // By cross, for each event that is observed: its value has fallen below zero and has not risen since.
+  // Written by cross: whether the value of an observed event has fallen below zero and has not risen since.
   bool below[event_count] = {};
-  // Contact and law by law.cpp, which decides them; until then there is no law. The rest follows from the above, with
-  // the load at the instant from which the inputs count.
+  // law.cpp decides contact and law; until then there is no law. The rest follows from the members above, with the load
+  // at the instant from which the inputs count: scene_at has that of any other.
   WheelScene scene = {};
 
   InForce() = default;
-  // Before anything is set: on a level road without inputs.
+  // The state before anything is set: a level road, and no inputs.
   explicit InForce(const Setup& setup) : scene(setup.scene) {}
-  // Road and inputs, in force from t on, and the scene that follows. A mu_max set below mu_slide counts for both.
+  // Road and inputs are in force from t on. A mu_max that was set below mu_slide counts for both.
   void take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials);
   // The value of an observed event changes its sign.
   void cross(Event event);
@@ -87,12 +94,11 @@ struct InForce {
   }
 };
 
-// How the demand differs from what is in force. A reading shows at once what was set, and the next step begins with it.
-enum class Pending : unsigned char {
-  nothing,
-  held_inputs,  // the inputs varied in the step that has ended, and the demand holds them where they arrived
-  set,          // by the caller
-};
+// How the demand differs from what is in force. For example, the caller sets F_X = 1 N with the derivative 10 N/s
+// (`set`: a reading shows it at once), and steps by 0.1 s (`nothing` within the step). At its end the demand holds F_X
+// = 2 N without a derivative (`held_inputs`), while a reading still has the slope of the step. If the caller sets F_X =
+// 2 N once more, the slope has ended (`set`).
+enum class Pending : unsigned char { nothing, held_inputs, set };
 
 struct Run {
   Phase phase = Phase::created;
@@ -101,20 +107,20 @@ struct Run {
   bool can_slide = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
   InForce in_force;
   double t = 0;  // s, clock of the run: the instant reached
-  // The state at y_time, s, clock of the run. It lags behind t while steps go on along a motion that is known already:
-  // update_state brings it to t. A step that asks more of the solution begins with that, so whatever has to do with a
-  // start or an event finds it at t.
+  // y is the state at y_time, s, clock of the run. A communication step along a motion that is known already moves t
+  // alone, so y may lag behind. update_state brings it to t. Every longer way begins with update_state: a step that
+  // asks more of the solution, an event, an end, a snapshot. The functions on that way take y as the state at t.
   double y_time = 0;
   double y[max_states] = {};
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
   bool logged[event_count] = {};      // of each event that is observed: it has occurred, and was logged
-  long long transitions = 0;          // of the friction, rolling and sliding
+  long long transitions = 0;          // between kinds of friction, and between rolling and sliding
   solver::Counters counted = {};      // all but those of the solver at work
 };
 
-// The counts of a run, those of the solver at work included.
+// All counts of a run.
 inline solver::Counters counters_of(const Run& run, const solver::Solver& solver) {
   const solver::Counters& a = run.counted;
   const solver::Counters b = run.phase == Phase::stepping ? solver.counters() : solver::Counters{};

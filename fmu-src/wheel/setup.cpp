@@ -1,5 +1,5 @@
-// Parameters checked as a whole, one message per fault (what, which value, what is allowed); and the setup from them:
-// formulation, initial state, scales of time, force, errors and steps.
+// Parameters are checked as a whole, with one message per fault: what, which value, what is allowed. The setup follows
+// from them: formulation, initial state, and the scales of time, force, errors and steps.
 #include "setup.hpp"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ double power_of_two_below(double x) {
                    std::numeric_limits<double>::min());
 }
 
-// The time scale is sqrt(length / g); without a weight that matters it is the inverse of the initial rate. The slope
-// changes no scale: it may change during a run.
+// The time scale is sqrt(length / g). Where the weight does not matter, it is the inverse of the initial rate. The
+// slope changes no scale, because it may change during a run.
 void set_scales(Setup& setup, const WheelKinematics& start) {
   CONSTANT(double, longest, 0.6, "time scales",
            "at an unstable rest the error estimate is zero: steps would grow without limit");
@@ -68,7 +68,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   return reporter.check(!passed.message, passed.message, row.name, shown, Digits{passed.value, 6});
 }
 
-// Those of the kind of run and the formulation, rolling and sliding.
+// Chooses the equations of rolling and of sliding by the formulation.
 void choose_equations(Setup& setup, const Demand& demand, bool can_slide) {
   const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation;
   setup.formulation = multibody ? &wheel_multibody : &wheel_reduced;
@@ -84,12 +84,12 @@ void Demand::hold(const Inputs& arrived, double t) {
   }
 }
 
-bool check_values(const Demand& demand, bool can_slide, Moment moment, const Reporter& reporter) {
+bool check_values(const Demand& demand, bool can_slide, Checked when, const Reporter& reporter) {
   using namespace variable;
   const double* v = demand.parameters;
   bool sound = true, fine[stored_count];
   for (unsigned k = 0; k < stored_count; ++k) sound &= fine[k] = check_value(reporter, k, demand.value(k));
-  // Between parameters each of which is fine.
+  // A rule about several parameters counts where each of them is fine by itself.
   const auto require = [&](bool holds, const char* message, auto... parameters) {
     sound &= reporter.check(holds || !(fine[parameters] && ...), message, Digits{v[parameters], 9}...);
   };
@@ -107,7 +107,7 @@ bool check_values(const Demand& demand, bool can_slide, Moment moment, const Rep
           "psi_dot_start, theta_dot_start = %s, %s rad/s: a guided wheel needs 0 for both; in "
           "co-simulation psi_dot_guide and theta_dot_guide turn it.",
           psi_dot_start, theta_dot_start);
-  require(moment == Moment::during_run || !(v[mu_slide] > v[mu_max]),
+  require(when == Checked::during_run || !(v[mu_slide] > v[mu_max]),
           "mu_slide = %s: mu_max must be at least as large, and is %s.", mu_slide, mu_max);
   require(can_slide || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),
           "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
@@ -119,7 +119,7 @@ bool check_values(const Demand& demand, bool can_slide, Moment moment, const Rep
   return sound;
 }
 
-// omega_z = phi_dot + psi_dot cos(theta): of two parts that cancel only rounding is left, which has no sign.
+// omega_z = phi_dot + psi_dot cos(theta). Where both parts cancel, only rounding remains, whose sign means nothing.
 void start_state(const WheelFormulation& formulation, const WheelParameters& wheel, const WheelMotion& motion,
                  double* y) {
   const double axial = motion.psi_dot * std::cos(motion.theta), rounding = 4 * std::numeric_limits<double>::epsilon();

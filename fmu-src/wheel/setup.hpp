@@ -1,5 +1,5 @@
-// Demand and setup: what the caller has set, and all that follows from its parameters when initialization ends. One
-// function computes the setup, nothing writes it later; a restored run computes it anew.
+// The demand is what the caller has set. The setup is all that follows from its parameters when initialization ends:
+// one function computes it, and nothing writes it later. A restored run computes it anew.
 #pragma once
 
 #include <cmath>
@@ -25,17 +25,18 @@ static_assert(max_states == WHEEL_SLIDING_STATES);
 enum class Kind : int { co_simulation, model_exchange };
 
 // Parameters and tolerance make the setup when initialization ends. Inputs, their derivatives and the road may be set
-// again later, and are in force from the next step on.
+// again later, and are in force from the next step on. Inputs have two writers: the caller, and `hold`.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
   double start_time = 0, stop_time = solver::never, tolerance = default_tolerance;
   Kind kind;
 
-  // (t: s, clock of the run) The step ends at t. A derivative holds for one step: every input stays where it arrived.
+  // At the end of a step, at t, s, clock of the run: a derivative counts for one step, and every input stays where it
+  // arrived.
   void hold(const Inputs& arrived, double t);
 
-  // Of a variable below stored_count, or of an input's polynomial.
+  // The value of a stored variable, or for k > 0 a coefficient of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
   double value(unsigned v, int k = 0) const { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
 
@@ -44,8 +45,9 @@ struct Demand {
   }
 };
 
-// What the state counts: an angle from its start less whole turns, a place from its start. So a wheel that starts far
-// away, or after many turns, loses no digits. In model exchange the state is the whole.
+// The state counts an angle from its start less whole turns, and a place from its start, so that a wheel that starts
+// far away or after many turns loses no digits. For example, psi_start = 100 rad is counted from 100 - 32 pi. In model
+// exchange the state is the whole.
 struct Origin {
   double start, state;  // where the whole and the state begin
   double whole(double now) const { return start == state ? now : start + (now - state); }
@@ -55,8 +57,8 @@ struct Setup {
   bool model_exchange;                  // another solver moves the states
   const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
-  // The start: on a level road with s = 0, without loads and law, which are part of the run; a slip or none; guided or
-  // not.
+  // The scene of the start. It says whether the wheel slides and whether it is guided. Road, loads and law are part of
+  // the run: here the road is level, and s = 0.
   WheelScene scene;
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
@@ -75,8 +77,9 @@ struct Setup {
   double slip_scale;                // m/s, of the slip: error that counts as one, and of its margin
   double slow_scales[max_states];   // error of each state that counts as one while the wheel spins slowly
 
-  // A regularized law bends within a few widths, and is steep there: only inside its layer do the solvers meet it.
-  // Outside, the law is the exact one to the last digit. Another solver gets the whole law.
+  // A regularized law bends within a few widths of omega_z = 0, and is steep there. Inside of that layer the solvers
+  // take the law as it is. Outside, it equals the exact law to the last digit, and is replaced by it. In model exchange
+  // the other solver gets the whole law.
   bool has_layer() const { return friction_law == regularized_law && !model_exchange; }
   bool steered() const { return scene.guided && !model_exchange; }  // the carrier turns at the rates that are inputs
   bool is_multibody() const { return formulation == &wheel_multibody; }
@@ -112,11 +115,11 @@ inline WheelDynamics dynamics_of(const Setup& setup, const WheelScene& scene, co
 }
 
 // (omega_z, rad/s) => scale of each state. A fast wheel hardly tilts: the range of theta falls with the square of the
-// spin, that of the rates with the spin, and errors are weighed by these ranges.
+// spin, and the range of the rates falls with the spin. Errors are weighed by these ranges.
 void scales_at(const Setup& setup, double omega_z, double* out);
 
-// (omega_z, rad/s) => fraction of the usual error that a step may make: errors add up over the turns of a fast wheel,
-// so it is below one where the wheel turns very often within the time scale.
+// (omega_z, rad/s) => fraction of the usual error that a step may make. Errors add up over the turns of a fast wheel,
+// so the fraction is below one where the wheel turns very often within the time scale.
 double share_at(const Setup& setup, double omega_z);
 
 // Angle from lying flat, rad, below which the wheel counts as flat: at the paper's scale about 1e-8 s before theta = 0.
@@ -129,8 +132,8 @@ inline double angle_from_flat(double theta) { return upright - std::fabs(theta -
 // rad: a larger angle has too few digits for a heading.
 inline constexpr double largest_angle = 1e12;
 
-// Logs one message per fault; true if there is none. During a run mu_max may have been set below mu_slide.
-enum class Moment { at_start, during_run };
-bool check_values(const Demand& demand, bool can_slide, Moment moment, const Reporter& reporter);
+// Logs one message per fault, and returns whether there is none. During a run mu_max may have been set below mu_slide.
+enum class Checked { at_start, during_run };
+bool check_values(const Demand& demand, bool can_slide, Checked when, const Reporter& reporter);
 
 }  // namespace wheel

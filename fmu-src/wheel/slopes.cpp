@@ -1,6 +1,6 @@
-// Difference quotients of fourth order. The reactions are linear in the load, so those by an input are exact up to
-// rounding; a variable that is not linear in the forces follows from those of the forces and of the motion
-// (Row::by_force), and a rate that another variable has is read there (Row::read_rate).
+// Difference quotients of fourth order. The reactions are linear in the load, so quotients by an input are exact up to
+// rounding. The derivative of a variable that is not linear in the forces follows from those of forces and motion
+// (Row::by_force). A rate that another variable has is read there (Row::read_rate).
 #include "slopes.hpp"
 
 #include <algorithm>
@@ -21,8 +21,9 @@ namespace {
 
 CONSTANT(double, first_part, 1e-3, "of the scale", "a step in which an error of fourth order is that of rounding");
 
-// f at four places, in steps from x, and their weights: for the slope, exact for polynomials of degree four, and for a
-// sum of third and fourth differences, which shows a bend; about x, or to one side where a limit is near.
+// Four places, in steps from x, and two sets of weights of f there. The first gives the slope, exactly for polynomials
+// of degree four. The second shows a bend, by third and fourth differences: their sum about x, and with half of the
+// third to one side, where a limit is near.
 struct Stencil {
   int places[4];
   double weights[4], bend[4];
@@ -113,7 +114,8 @@ class Quotients {
       const double size = std::fabs(quotient[i]);
       const double rounding =
           std::numeric_limits<double>::epsilon() * (std::fabs(centre_[i]) + std::fabs(x) * size) / h;
-      // Of a smooth function a bend is of the order h^2, the error h^4. A slope of zero is known to rounding alone.
+      // The bend of a smooth function is of the order h^2, and the error is of the order h^4. So the error is about the
+      // square of the bend, over the slope. A bend of zero shows nothing, and leaves rounding alone.
       const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
       if (exact_[i] || likely >= error_[i]) continue;
       slope_[i] = quotient[i];
@@ -145,9 +147,9 @@ class Quotients {
   std::array<bool, count> exact_ = {};  // smaller steps are of no use, whatever else is asked for
 };
 
-// In the initial state, or by a rate of the carrier, which jumps; an integer or boolean parameter moves nothing. The
-// step is relative to the parameter where it cannot be negative; for an angle, a place or a rate it is relative to the
-// parameter or to 1, whichever is larger.
+// By a parameter in the initial state, or by a rate of the carrier, which jumps. The step is relative to the parameter
+// where it cannot be negative. For an angle, a place or a rate it is relative to the parameter or to 1, whichever is
+// larger.
 bool take_by_parameter(const Wheel& w, unsigned parameter, Quotients& quotients) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
@@ -171,7 +173,7 @@ void keep_ground(Instant& instant) {
   instant.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
-// A brake that is not in use has the law that it would have in use; in model exchange that law waits for an event.
+// A brake that is not in use gets the law that it would have in use. In model exchange that law waits for an event.
 void put_brake_in_use(Instant& instant) {
   if (instant.setup->model_exchange || instant.scene.friction.kind != WHEEL_FRICTIONLESS) return;
   instant.scene.friction = braked_law(*instant.setup, instant.in_force.scene_at(instant.t), instant.y);
@@ -188,8 +190,8 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
   return is_tilt ? scales[state] * std::sin(value) : scales[state];
 }
 
-// (an input or a state) => derivatives by it; the law and the sign of N are kept. Where a slide begins here, the loads
-// decide the direction of the slip.
+// By an input or a state. The law and the sign of N are kept. Where a slide begins here, the loads decide the direction
+// of the slip.
 void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   const Setup& setup = w.setup;
   Instant here = instant_of(w);
@@ -227,8 +229,8 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
   return tilting + std::fabs(y[WHEEL_OMEGA_3]) + std::sqrt(swing) + chi_dot;
 }
 
-// In a small part of the time in which the wheel itself moves. kappa of a regularized law is kept: its rate can be
-// large, and acts as a moment about the axle.
+// By time along the motion, with a step that is a small part of the time in which the wheel moves. Between the steps
+// kappa of a regularized law is kept. Its rate, which can be large, is added as the rate of a moment about the axle.
 void take_along_motion(const Wheel& w, Quotients& quotients) {
   const Setup& setup = w.setup;
   Instant start = instant_of(w);

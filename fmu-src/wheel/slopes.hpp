@@ -1,13 +1,13 @@
-// Derivatives of calculated variables, by time along the motion, or by one known, which is an input or a state at the
-// present instant, or, before the run, a parameter.
+// Derivatives of calculated variables: by time along the motion, or by one known variable. That is an input or a state
+// at the present instant, or a parameter before the run.
 #pragma once
 
 #include "wheel.hpp"
 
 namespace wheel {
 
-// (outputs) => their d/dt at the present instant, while the law and the sign of N last, under inputs that follow their
-// polynomials; after a step in which they varied, those of the step. Co-simulation alone.
+// (outputs) => their d/dt at the present instant, for co-simulation. The law and the sign of N last, and inputs follow
+// their polynomials; after a step, these are the polynomials of the step.
 void read_rates(const Wheel& wheel, Listed outputs, std::size_t count, double* out);
 
 // (known, seed, unknowns, `count` of them) => sums[k] += seed times the derivative of each unknown by the known. All

@@ -1,4 +1,4 @@
-// Bytes may come from anywhere: whatever they are, reading them is harmless.
+// The state as bytes. They may come from anywhere: whatever they are, reading them is harmless.
 #include "snapshot.hpp"
 
 #include <cstring>
@@ -25,8 +25,8 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// What the caller has set, and what of the run does not follow from it. The bounds keep forged numbers harmless, not
-// meaningful.
+// All that the caller has set, and all of the run that does not follow from it: a new member of Demand, Run or InForce
+// belongs here too, or `complete` computes it. The bounds keep forged numbers harmless, not meaningful.
 void visit(support::Archive& archive, Record& record) {
   Demand& demand = record.demand;
   Run& run = record.run;
@@ -64,15 +64,15 @@ void visit(support::Archive& archive, Record& record) {
   for (long long* count : run.counted.all()) archive.tally(*count);
 }
 
-// Completes a run that was read by what follows from its demand. False where the demand describes no wheel, or the run
-// names an equation or an event that does not exist.
+// Completes a run that was read, by all that follows from its demand. False where the demand describes no wheel, or the
+// run names an equation or an event that does not exist.
 bool complete(Record& record) {
   auto& [demand, setup, run] = record;
   if (run.phase == Phase::faulty) run.phase = Phase::initializing;  // the faults are logged again
   const bool ended = run.ended_by != Event::none;
   if (ended ? !event_row(run.ended_by).ending : run.phase == Phase::ended) return false;
   if (!has_state(run.phase)) return true;
-  if (!check_values(demand, run.can_slide, Moment::during_run, Reporter())) return false;
+  if (!check_values(demand, run.can_slide, Checked::during_run, Reporter())) return false;
   setup = setup_of(demand, run.can_slide);
   run.y_time = run.t;
   if (setup.model_exchange) wheel_reduced_state(run.x, run.y);

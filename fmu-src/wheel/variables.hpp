@@ -11,8 +11,8 @@ namespace wheel {
 
 class Reading;
 
-// How the wheel moves, and what acts on it at the ground, fixed axes, N, and about the axle; or the rates of these by
-// some quantity.
+// How the wheel moves, the force of the ground on it, N, in fixed axes, and the moments about the axle; or the rates of
+// these by some quantity.
 struct Acting {
   WheelKinematics motion;
   double lambda[3];
@@ -54,8 +54,8 @@ const Row& row_of(unsigned variable);
 // (reading) => how the wheel moves, and what acts on it
 Acting acting_of(Reading& reading);
 
-// A limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`; null: none. And the
-// message of it: name, value, limit.
+// The limit that a value does not keep: "at least", "at most", "less than" or "greater than" `value`, and the format of
+// its message, which takes name, value and limit. Null where the value keeps all limits.
 struct Limit {
   const char *relation = nullptr, *message = nullptr;
   double value = 0;

@@ -12,8 +12,8 @@
 namespace wheel {
 namespace {
 
-// Whether the initial state is inside the model, with a message: no force of the ground holds a wheel that jams, and
-// values that are sound one by one can have products that are not finite.
+// Whether the initial state is inside the model; if not, a message is logged. No force of the ground holds a wheel that
+// jams, and values that are sound one by one can have products that are not finite.
 bool check_start(const Record& r, Reading& start, const Reporter& reporter) {
   const InForce& in_force = r.run.in_force;
   if (in_force.slides() && margin_of(event_row(Event::jams), r.setup, in_force, 0, r.run.y) < 0)
@@ -39,7 +39,7 @@ void warn_of_paper_start(const Wheel& w) {
                    "degrees off the road's plane; a vehicle's wheel has psi_start = 0 and theta_start = pi/2.");
 }
 
-// To a phase without further steps: the solution is not needed any more.
+// Leads to a phase without further steps: the solution is not needed any more.
 void freeze(Wheel& w, Phase phase) {
   update_state(w);
   w.run.counted = counters_of(w.run, w.solver);
@@ -106,7 +106,7 @@ bool prepare(Record& r, const Reporter& reporter) {
   run = Run();
   run.phase = Phase::faulty;
   run.can_slide = r.demand.parameters[variable::mu_slide] > 0;
-  if (!check_values(r.demand, run.can_slide, Moment::at_start, reporter)) return false;
+  if (!check_values(r.demand, run.can_slide, Checked::at_start, reporter)) return false;
   r.setup = setup_of(r.demand, run.can_slide);
   std::copy_n(r.setup.initial_state, max_states, run.y);
   run.in_force = InForce(r.setup);

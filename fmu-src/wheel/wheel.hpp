@@ -1,6 +1,6 @@
-// One wheel: what the caller has set, what follows from it, what is in force and how far it has come, and the solution
-// as far as it is known; and its run from the parameters to the end. The run has a clock, zero at the start, so that a
-// start time of 1e9 s costs no digits.
+// One wheel, and its run from the parameters to the end. A wheel has what the caller has set, what follows from it,
+// what is in force, how far the run has come, and the solution as far as it is known. The run has a clock, which is
+// zero at the start, so that a start time of 1e9 s costs no digits.
 //
 // Of a wheel that is passed as const, a function changes only what is kept to save work: the polynomial of a step, the
 // piece of a track and the half of an orbit that were read last. So no two threads may read one wheel. A function that
@@ -51,8 +51,8 @@ struct Instant {
   long long transitions;
 };
 
-// All that can be read at one instant, which stays the same. Positions and velocities, and accelerations and reactions,
-// are computed when they are first asked for and kept; nothing is computed for an output that nobody reads.
+// All that can be read at one instant, which does not change. Positions and velocities are computed when they are first
+// asked for, and kept; so are accelerations and reactions. Nothing is computed for an output that nobody reads.
 class Reading {
  public:
   explicit Reading(const Instant& of) : at(of) {}
@@ -105,16 +105,16 @@ inline void update_state(Wheel& wheel) {
 
 Instant instant_of(const Wheel& wheel);
 
-// As new: start values, no state. The orbit is kept, for the next run of the same shape.
+// The wheel is as new: start values, and no state. The orbit is kept for the next run of the same shape.
 void reset(Wheel& wheel);
 // stop_time: infinite for none. tolerance <= 0: the default one.
 void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
-// Parameters and inputs, with their derivatives, which are checked as a whole by prepare; in a run of model exchange a
-// state too.
+// Sets a parameter, or an input or its derivative; in a run of model exchange a state too. Parameters are checked as a
+// whole by `prepare`.
 void set(Wheel& wheel, unsigned variable, double value, int order = 0);
 // The parameters are checked from here on.
 void begin_initialization(Wheel& wheel);
-// The initial state from the present parameters, true if it exists. Else one message per fault.
+// Computes the initial state from the present parameters. If there is none, false, with one message per fault.
 bool prepare(Record& record, const Reporter& reporter);
 // `prepare` where the parameters have changed since it was last done, so that each message comes once. False as long as
 // they are faulty; true where no initial state is due.
