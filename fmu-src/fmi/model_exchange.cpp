@@ -47,7 +47,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   return guarded(c, legality::new_discrete_states, [=](Instance& i) {
     if (!info) return "the event info is a null pointer";
     *info = {};
-    info->valuesOfContinuousStatesChanged = wheel::decide(i.change()) ? fmi2True : fmi2False;
+    info->valuesOfContinuousStatesChanged = wheel::decide_in_event_mode(i.change()) ? fmi2True : fmi2False;
     info->terminateSimulation = i.wheel.has_ended() ? fmi2True : fmi2False;
     return no_fault;
   });

@@ -59,7 +59,7 @@ bool check_value(Instance& i, unsigned variable, double value) {
     i.log(Topic::discard, reason, wheel::row_of(variable).name, value, limit..., kept);
     return false;
   };
-  const wheel::Limit passed = wheel::limit_passed(variable, value);
+  const wheel::Limit passed = wheel::broken_limit(variable, value);
   if (!std::isfinite(value)) return refuse("%s: %s = %s: a finite number is needed; the value stays %s.");
   if (passed.relation)
     return refuse("%s: %s = %s: it must be %s %s; the value stays %s.", passed.relation, passed.value);

@@ -73,11 +73,12 @@ Entry Swing::entry_at(const double* y0, double most_angle) const {
 //   theta, omega_2, omega_3 at T + s are those at T - s, and omega_1 has the other sign;
 //   psi(T + s) = 2 psi(T) - psi(T - s), and phi likewise;
 //   O(T + s) - O(T) = -exp(2 i psi(T)) conj(O(T - s) - O(T)).
-// The last holds because the velocity of O is exp(i psi) (a + i b), where a, along e1, is a function of omega_3, and b,
-// across it, has the sign of omega_1.
+// The last holds because the velocity of O is exp(i psi) (a + i b), where a, along e1, is even about T as omega_3 is,
+// and b, across it, is odd as omega_1 is.
 //
 // (k) => the half k. The k halves before it are the integrated one and its mirror image in turn. A pair of them turns
-// the path by 2 delta; with d the displacement of O in the first half, n pairs carry O by a geometric sum,
+// the path by 2 delta and carries O by d + exp(2 i delta) conj(d) = 2 Re(d exp(-i delta)) exp(i delta), where d is the
+// displacement of O in the first half. Another pi in delta changes none of it. n pairs carry O by a geometric sum,
 // 2 Re(d exp(-i delta)) exp(i n delta) sin(n delta) / sin(delta). Where k is odd, one half more.
 Half Swing::half_at(double k, const Pose& start) const {
   const double n = std::floor(0.5 * k);

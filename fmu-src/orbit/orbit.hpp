@@ -170,10 +170,11 @@ class Swing {
 // enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
 class Orbit {
  public:
-  // Integrates the motion by DOP853, unless it has the shape of the one integrated last. The solver has to be started
-  // anew before anything else is asked of it. The swing is a function of problem, tolerance, theta and the rates in
-  // y0 alone: bit-identical in every process and from every place and heading. False, and the orbit is left, where the
-  // motion is refused (building.cpp): the caller then steps through it from its start.
+  // Integrates the motion by DOP853, unless it has the shape of the one integrated last. The solver is used for it, and
+  // keeps the problem until it is started anew: nothing else may be asked of it before. The swing is a function of
+  // problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
+  // heading. False, and the orbit is left, where the motion is refused (building.cpp): the caller then steps through it
+  // from its start.
   bool enter(const FreeMotion& motion, solver::Solver& solver);
   void leave() { entry_ = {}; }
 

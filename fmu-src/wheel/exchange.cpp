@@ -54,7 +54,8 @@ double indicator(const EventRow& row, const Record& r) {
   return row.can_occur(r.setup, r.run.in_force) ? margin_at(row, r) + distance : 1;
 }
 
-// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred.
+// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred. Without
+// friction `spin_changes` always has, by its value of zero; then the law is decided, as it is without the event.
 bool has_occurred(const EventRow& row, const Record& r) {
   if (!row.in_model_exchange || !row.can_occur(r.setup, r.run.in_force)) return false;
   return margin_at(row, r) <= 0 || margin_at(row, r, soon * r.setup.time_scale) <= 0;
@@ -80,7 +81,7 @@ Event ending_at(const Record& r) {
 }
 
 // Decides in y: of the state, an event changes omega_z alone.
-bool decide_anew(Wheel& w) {
+bool decide_events(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
   double& omega_z = run.y[WHEEL_OMEGA_3];
@@ -179,8 +180,8 @@ bool has_event(Wheel& w) {
                      [&](const EventRow& row) { return row.in_model_exchange && indicator(row, w) <= 0; });
 }
 
-bool decide(Wheel& w) {
-  const bool bends = decide_anew(w);
+bool decide_in_event_mode(Wheel& w) {
+  const bool bends = decide_events(w);
   w.run.x[WHEEL_EULER_OMEGA_Z] = w.run.y[WHEEL_OMEGA_3];  // all that an event changes of the state
   return bends;
 }

@@ -37,7 +37,7 @@ bool has_event(Wheel& wheel);
 // Event mode decides the law that holds from here on. True where the motion bends here, by a state or by the law: some
 // solvers go on from a step that they took under the old law, unless they read that the states are new. Where the model
 // ends here, the run ends.
-bool decide(Wheel& wheel);
+bool decide_in_event_mode(Wheel& wheel);
 
 // Whether a run can begin; if not, a message is logged. Model exchange has no way to report an end at the start.
 bool starts_inside(const Wheel& wheel);

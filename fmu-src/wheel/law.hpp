@@ -1,6 +1,15 @@
 // What acts on the wheel from an instant on: road and inputs, the law of rolling resistance after Filippov, and whether
 // the wheel rolls or slides after Coulomb. Results depend on the arguments alone. Functions that decide write contact
 // and law in `in_force`, and the slip in y.
+//
+//                     writes                          called
+//   enforce           road, inputs; then as below     at the start, at a step after something was set, for a reading
+//   decide_contact    contact, law, slip              by enforce, and where a slip ends
+//   decide_law        law                             by decide_contact, at events of the spin, in model exchange
+//   release           law                             where friction and brake can no longer hold the wheel
+//   begin_slide       contact, law, slip              by decide_contact, and where the grip is lost
+// The observed sides of the ground are written by InForce::cross (run.hpp), at events alone. Nothing here counts or
+// logs: transitions.hpp does.
 #pragma once
 
 #include "constant.hpp"

@@ -254,9 +254,9 @@ Excess excess_of(const Wheel& w, double h) {
     if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
     const Span span = span_of(c, h);
     const unsigned input = first_input + i;
-    if (const Limit limit = limit_passed(input, span.largest); limit.relation) return {input, span.largest, limit};
+    if (const Limit limit = broken_limit(input, span.largest); limit.relation) return {input, span.largest, limit};
     if (i == brake_input) continue;
-    if (const Limit limit = limit_passed(input, span.least); limit.relation) return {input, span.least, limit};
+    if (const Limit limit = broken_limit(input, span.least); limit.relation) return {input, span.least, limit};
   }
   return {};
 }

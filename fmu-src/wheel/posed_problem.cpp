@@ -35,41 +35,44 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   return least_margin(setup, in_force, y, N);
 }
 
-// (theta, heading_rate: |psi_dot| times the time scale) => relative rounding of the rates near flat. psi_dot = omega_2
-// / sin(theta) magnifies the rounding of theta. In (24) accelerations of the size of r_0 psi_dot^2 cancel: their
-// rounding acts on a rate for less than 1 / psi_dot in a step, but at once on the direction of a slip.
-double rounding_of_rates(double theta, double heading_rate, bool slides) {
+// (y) => relative rounding of the rates. It grows near flat, for two reasons:
+//   psi_dot = omega_2 / sin(theta) magnifies the rounding of theta;
+//   in (24) accelerations of the size of r_0 psi_dot^2 cancel. The rounding that is left acts on a rate for less than
+//   1 / psi_dot in a step, but at once on the direction of a slip. The reduced form has no such cancellation.
+double rounding_of_rates(const Setup& setup, const InForce& in_force, const double* y) {
   CONSTANT(double, remains, 0.1, "1",
            "of the rounding of theta, whose sign changes from step to step, over many steps");
-  const double cancels = slides ? heading_rate * heading_rate : heading_rate;
-  return std::numeric_limits<double>::epsilon() * std::fmax(remains * theta / angle_from_flat(theta), cancels);
+  const double theta = y[WHEEL_THETA], magnified = remains * theta / angle_from_flat(theta);
+  double cancelled = 0;
+  if (setup.is_multibody()) {
+    const double heading_rate = std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale;
+    cancelled = in_force.slides() ? heading_rate * heading_rate : heading_rate;
+  }
+  return std::numeric_limits<double>::epsilon() * std::fmax(magnified, cancelled);
 }
 
-// (share, y) => weights[i] = 1 / (tolerance scale_i + rounding |y_i|), where
-//   tolerance   share * setup.tolerance * share_at(spin), but at least the rounding of states and rates: no step has to
-//               be more exact than the numbers can express;
-//   scale_i     the range of the state (scales_at).
+// (share, y) => weights[i] = 1 / (tolerance scale_i + rounding |y_i|). The scale is the range of the state (scales_at),
+// and the tolerance is that of a slow wheel, share * setup.tolerance, times share_at for a fast one. Two floors keep it
+// from more than the numbers can express: the share of a fast wheel stops at the rounding of a state, and no tolerance
+// falls below the rounding of the rates.
 // A regularized law turns errors of omega_z into moments, over its width omega_s. There the spin must be accurate to a
 // part of that width too.
 template <int states>
 void weights(void* owner, double share, const double* y, double* weights) {
   const Setup& setup = record_of(owner).setup;
   const InForce& in_force = record_of(owner).run.in_force;
-  const double theta = y[WHEEL_THETA], spin = y[WHEEL_OMEGA_3];
+  const double spin = y[WHEEL_OMEGA_3];
   CONSTANT(double, rounding, 32 * std::numeric_limits<double>::epsilon(), "1", "of a state after some hundred steps");
   CONSTANT(double, width, 10, "omega_s sqrt(tolerance)", "error of the spin in a regularized law, of second order");
-  const double slow = share * setup.tolerance;
-  const double heading_rate =
-      setup.is_multibody() ? std::fabs(y[WHEEL_OMEGA_2] / std::sin(theta)) * setup.time_scale : 0;
-  const double least = std::fmax(std::fmin(slow, rounding), rounding_of_rates(theta, heading_rate, in_force.slides()));
-  const double tolerance = std::fmax(slow * share_at(setup, spin), least);
+  const double of_slow = share * setup.tolerance, of_fast = of_slow * share_at(setup, spin);
+  const double floor_of_fast = std::fmin(of_slow, rounding), floor = rounding_of_rates(setup, in_force, y);
+  const double tolerance = std::fmax(of_fast, std::fmax(floor_of_fast, floor));
   double scales[max_states];
   scales_at(setup, spin, scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
   if (in_force.law().kind != WHEEL_REGULARIZED) return;
-  const double part = width * std::sqrt(tolerance);
-  const double layer = part * setup.omega_s + tolerance * std::fabs(spin);
-  weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], layer) + rounding * std::fabs(spin));
+  const double in_law = width * std::sqrt(tolerance) * setup.omega_s + tolerance * std::fabs(spin);
+  weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], in_law) + rounding * std::fabs(spin));
 }
 
 // (event, t, y) => its margin

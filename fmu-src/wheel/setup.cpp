@@ -59,7 +59,7 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   using namespace variable;
   const Row& row = row_of(v);
   const Digits shown = {value, 9};
-  const Limit passed = limit_passed(v, value);
+  const Limit passed = broken_limit(v, value);
   if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
   if (v == theta_start)
     return reporter.check(angle_from_flat(value) > flat_angle,

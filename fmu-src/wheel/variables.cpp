@@ -175,7 +175,7 @@ Acting acting_of(Reading& reading) {
   return {reading.kinematics(), {d.lambda[0], d.lambda[1], d.lambda[2]}, axle};
 }
 
-Limit limit_passed(unsigned v, double value) {
+Limit broken_limit(unsigned v, double value) {
   using namespace variable;
   const Row& row = rows[v];
   const bool positive = v == m || v == r_0 || v == J_x || v == J_y || v == J_z || v == omega_s;

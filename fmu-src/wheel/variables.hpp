@@ -60,7 +60,7 @@ struct Limit {
   const char *relation = nullptr, *message = nullptr;
   double value = 0;
 };
-Limit limit_passed(unsigned variable, double value);
+Limit broken_limit(unsigned variable, double value);
 // The place of the variable that has this value reference; variable_count: there is none.
 unsigned variable_of(unsigned reference);
 
