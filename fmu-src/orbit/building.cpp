@@ -7,7 +7,7 @@
 //
 // A motion is refused where
 //   a step fails, an event bends the motion, or the track is full or without memory;
-//   theta swings by no more than errors between both turning points, and the wheel is not in steady motion;
+//   omega_1 stays within errors between both turning points, and the wheel is not in steady motion;
 //   the rates have not the symmetry of time reversed;
 //   the rates depend on heading, roll angle or place.
 // Both tests rest on `maps`: the rates at the image of a state are the image of its rates. An owner may add any force
@@ -163,12 +163,12 @@ double turning_point(const solver::Problem& problem, double before, solver::Solv
 }
 
 // Steps past T1 and T2; a start with omega_1 = 0 is T1. It ends where
-//   omega_1 changes its sign at T2: it repeats, unless the swing since T1 is no larger than errors;
+//   omega_1 changes its sign at T2: the motion repeats, unless omega_1 has stayed within errors since T1;
 //   an event ends the motion: up to there;
 //   an event bends it, a step fails, or the track is full: no course.
 Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
   const solver::Problem& problem = motion.problem;
-  double y[states], weights[states], swing = 0, before = motion.y0[WHEEL_OMEGA_1];
+  double y[states], weights[states], largest_rate = 0, before = motion.y0[WHEEL_OMEGA_1];
   problem.weights(problem.owner, problem.share, motion.y0, weights);
   if (!solver.start(problem, solver::Method::runge_kutta, 0, motion.y0)) return {};
   Course course;
@@ -183,12 +183,12 @@ Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
       const double turning = turning_point(problem, before, solver);
       if (has_T1) {
         course.T2 = turning;
-        if (swing * weights[WHEEL_OMEGA_1] < least_swing) return {};
+        if (largest_rate * weights[WHEEL_OMEGA_1] < least_swing) return {};
         break;
       }
       course.T1 = turning;
       has_T1 = true;
-      swing = 0;
+      largest_rate = 0;
     }
     if (outcome == solver::Outcome::event) {
       course.T2 = solver.known_until();
@@ -196,7 +196,7 @@ Course stepped_course(const FreeMotion& motion, solver::Solver& solver) {
       break;
     }
     if (now != 0) before = now;
-    swing = std::fmax(swing, std::fabs(now));
+    largest_rate = std::fmax(largest_rate, std::fabs(now));
   }
   course.counters = solver.counters();
   return course;

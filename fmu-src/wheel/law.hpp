@@ -8,8 +8,8 @@
 //   decide_law        law                             by decide_contact, at events of the spin, in model exchange
 //   release           law                             where friction and brake can no longer hold the wheel
 //   begin_slide       contact, law, slip              by decide_contact, and where the grip is lost
-// The observed sides of the ground are written by InForce::cross (run.hpp), at events alone. Nothing here counts or
-// logs: transitions.hpp does.
+// The sides of the ground are written by InForce::cross (run.hpp), at events and where a run leaves its orbit. Nothing
+// here counts or logs: transitions.hpp does.
 #pragma once
 
 #include "constant.hpp"

@@ -28,7 +28,7 @@ enum class Phase : int {
   continuous_time,  // model exchange: the caller's solver moves the states
   ended,            // the model has ended, by an event
   closed,           // the caller has ended the run
-  broken,           // a step has failed; the state is that before it
+  broken,           // a step has failed, and the state is that before it; or a restored history was no solution
   without_start,    // initialization has failed: there is no state
 };
 inline constexpr int phase_count = static_cast<int>(Phase::without_start) + 1;

@@ -40,7 +40,7 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
   setup.tilting = std::sqrt(start.theta_dot * start.theta_dot + omega_2 * omega_2);
 }
 
-// The scale of angles is 1 rad, of lengths setup.length, of rates the inverse of the time scale or the initial tilting,
+// The scale of theta and chi is 1 rad. The scale of rates is the inverse of the time scale or the initial tilting,
 // whichever is larger.
 void set_error_scales(Setup& setup) {
   CONSTANT(double, slip, 0.15, "lengths over the time scale", "error of a slip that counts as one of 1 rad");

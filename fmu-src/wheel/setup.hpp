@@ -1,5 +1,5 @@
-// The demand is what the caller has set. The setup is all that follows from its parameters when initialization ends:
-// one function computes it, and nothing writes it later. A restored run computes it anew.
+// The demand is what the caller has set. The setup is all that follows from its parameters, and from whether the wheel
+// can slide. It is computed with the initial state, never during a run. A restored run computes it anew.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ static_assert(max_states == WHEEL_SLIDING_STATES);
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
-// Parameters and tolerance make the setup when initialization ends. Inputs, their derivatives and the road may be set
+// Parameters and tolerance make the setup. Inputs, their derivatives and the road may be set
 // again later, and are in force from the next step on. Inputs have two writers: the caller, and `hold`.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
