@@ -93,7 +93,7 @@ fmi2Status Instance::prepare_reading(const fmi2ValueReference variables[], std::
 double Instance::value_of(unsigned variable) {
   if (variable < wheel::stored_count) return wheel.demand.value(variable);
   if (!reading_) {
-    reading_.emplace(wheel::instant_of(wheel));
+    reading_.emplace(wheel);
     wheel::warn_of_jam(wheel, reading_->at);
   }
   return wheel::row_of(variable).read(*reading_);

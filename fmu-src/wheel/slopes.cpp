@@ -264,7 +264,7 @@ void take_along_motion(const Wheel& w, Quotients& quotients) {
 
 void read_rates(const Wheel& w, Listed outputs, std::size_t count, double* out) {
   Quotients quotients;
-  Reading reading(instant_of(w));
+  Reading reading(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k) {
     if (row_of(outputs[k]).read_rate) continue;

@@ -72,6 +72,8 @@ Instant instant_of(const Wheel& w) {
   return instant;
 }
 
+Reading::Reading(const Wheel& w) : at(instant_of(w)) {}
+
 void reset(Wheel& w) {
   static_cast<Record&>(w) = Record(w.demand.kind);
   w.endings = 0;

@@ -35,6 +35,8 @@ struct Record {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
+struct Wheel;
+
 // A wheel at one instant. Fixed axes.
 struct Instant {
   // (y: the state at the instant reached) => that instant, where what was set since the last step is in force at once.
@@ -56,6 +58,7 @@ struct Instant {
 class Reading {
  public:
   explicit Reading(const Instant& of) : at(of) {}
+  explicit Reading(const Wheel& wheel);  // of the instant reached
 
   const Instant at;
 
