@@ -1,5 +1,5 @@
-/* The moment of ground and brake about the axle as the law of friction gives it, tau = -(s N + brake) kappa: linear in
- * the normal force N. For the files of this folder alone. */
+/* The moment of ground and brake about the axle as the law of rolling resistance gives it, tau = -(s N + brake) kappa:
+ * linear in the normal force N. For the files of this folder alone. */
 #ifndef WHEEL_AXLE_LAW_H
 #define WHEEL_AXLE_LAW_H
 

@@ -1,6 +1,6 @@
 // The multibody formulation behind the C header: the paper's system of equations of motion, (15)-(24), any inertia,
-// under a law of friction, solved at a state of the reduced forms. Fixed axes for O, Euler angles for the attitude.
-// Eigen.
+// under a law of rolling resistance, solved at a state of the reduced forms. Fixed axes for O, Euler angles for the
+// attitude. Eigen.
 //
 // Unknowns q_ddot (6) and lambda (3); rows: motion of O (fixed axes), rotation (body axes), constraint [B]{q_ddot} =
 // -[B_dot]{q_dot}. Mended misprints, see docs/errata.md: the sign and the bracket of F_beta (16), q_ddot in (24).
@@ -93,7 +93,7 @@ Vector3 F_beta(const Multibody& s) {
   return -(inertia * s.Q_dot + s.A.transpose() * s.A_dot * inertia * s.Q) * s.attitude.beta_dot;
 }
 
-// (24), ready for a law of friction.
+// (24), ready for a law of rolling resistance.
 struct Equations {
   const WheelScene& scene;
   Multibody s;
@@ -164,7 +164,7 @@ Solution solve(const Equations& now, bool pulls) {
   return {unknowns, axle_moment_of(&law, unknowns[lambda_3]), now.slides ? K.determinant() : 0};
 }
 
-// (24) under the scene's law of friction.
+// (24) under the scene's law of rolling resistance.
 Solution solve(const Equations& now) {
   const WheelGround ground = now.scene.ground;
   if (ground == WHEEL_GROUND_PULLS) return solve(now, true);

@@ -1,4 +1,4 @@
-/* What acts on a wheel: a load, a law of friction, which is checked, and the slope of the road. */
+/* What acts on a wheel: a load, a law of rolling resistance, which is checked, and the slope of the road. */
 #include <math.h>
 
 #include "wheel_equations.h"

@@ -48,8 +48,9 @@ typedef struct WheelLoad {
   double guide[2]; /* rad/s2, psi_ddot and theta_ddot, which the wheel carrier gives a guided wheel */
 } WheelLoad;
 
-/* The moment tau of ground and brake about the axle: tau = -(s N + brake) kappa. N is the normal force lambda_3; a
- * ground that pulls (N <= 0) has no friction, and the brake's part alone is left (WheelGround). */
+/* The law of rolling resistance, which a brake shares: the moment tau of ground and brake about the axle is
+ * tau = -(s N + brake) kappa. N is the normal force lambda_3; a ground that pulls (N <= 0) has no friction, and the
+ * brake's part alone is left (WheelGround). */
 typedef enum WheelFrictionKind {
   WHEEL_NO_LAW,       /* the law of a struct filled with zeros: every acceleration and force is NaN */
   WHEEL_FRICTIONLESS, /* kappa = 0: no moment, whatever s and the brake are */
@@ -92,7 +93,7 @@ typedef struct WheelScene {
   int guided;
 } WheelScene;
 
-/* The scene of a wheel under a load (NULL: none) and a law of friction, for example
+/* The scene of a wheel under a load (NULL: none) and a law of rolling resistance, for example
  *   wheel_scene(&wheel, NULL, (WheelFriction){.kind = WHEEL_ROLLING, .sigma = -1}).
  * The scene has WHEEL_NO_LAW, so that every result is NaN instead of a motion that was not meant, where s or the brake
  * is negative, where WHEEL_ROLLING has another sigma than +1 or -1, or where omega_s of WHEEL_REGULARIZED is not
@@ -164,7 +165,7 @@ extern const WheelFormulation wheel_multibody;
  * rate of chi is written as zero: it is any, or infinite. */
 extern const WheelFormulation wheel_sliding;
 
-/* The state of `wheel_sliding`: (24) with the law of friction in the place of the two horizontal constraints. */
+/* The state of `wheel_sliding`: (24) with Coulomb's law in the place of the two horizontal constraints. */
 extern const WheelFormulation wheel_multibody_sliding;
 
 /* The states of model exchange, x: X_O, Y_O, psi, theta, phi, theta_dot, psi_dot, omega_z. The motion that the

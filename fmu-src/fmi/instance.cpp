@@ -94,7 +94,7 @@ double Instance::value_of(unsigned variable) {
   if (variable < wheel::stored_count) return wheel.demand.value(variable);
   if (!reading_) {
     reading_.emplace(wheel);
-    wheel::warn_of_jam(wheel, reading_->at);
+    wheel::warn_of_jam(wheel);
   }
   return wheel::row_of(variable).read(*reading_);
 }

@@ -222,11 +222,12 @@ Swing integrate(const FreeMotion& given, solver::Solver& solver) {
 
 bool Orbit::enter(const FreeMotion& motion, solver::Solver& solver) {
   leave();
-  const auto& shape = motion.shape;
-  if (!has_integrated_ || !std::equal(shape.begin(), shape.end(), shape_.begin())) {
+  const auto& key = motion.key;
+  if (!has_integrated_ || !std::equal(key.begin(), key.end(), key_.begin())) {
     has_integrated_ = true;
-    std::copy(shape.begin(), shape.end(), shape_.begin());
+    std::copy(key.begin(), key.end(), key_.begin());
     swing_ = integrate(motion, solver);
+    solver.drop();
   }
   if (!course().exists()) return false;
   const Entry entry = swing_.entry_at(motion.y0, motion.most_angle);

@@ -63,10 +63,10 @@ struct FreeMotion {
   solver::Consequence (*on_event)(void* owner, int event, double t, double* y);
   const double* y0;
   double most_angle;  // rad, by which psi or phi may turn
-  // The numbers that the motion follows from, but for psi, phi and place of its start; at most most_shape.
-  std::span<const double> shape;
+  // The numbers that the motion follows from, but for psi, phi and place of its start; at most longest_key.
+  std::span<const double> key;
 };
-inline constexpr std::size_t most_shape = 64;
+inline constexpr std::size_t longest_key = 64;
 
 // The polynomials of the steps of a motion.
 class Track {
@@ -170,11 +170,10 @@ class Swing {
 // enter, read as often as wanted from 0 to until(), leave; and so on with the next run.
 class Orbit {
  public:
-  // Integrates the motion by DOP853, unless it has the shape of the one integrated last. The solver is used for it, and
-  // keeps the problem until it is started anew: nothing else may be asked of it before. The swing is a function of
-  // problem, tolerance, theta and the rates in y0 alone: bit-identical in every process and from every place and
-  // heading. False, and the orbit is left, where the motion is refused (building.cpp): the caller then steps through it
-  // from its start.
+  // Integrates the motion by DOP853, unless it has the key of the one integrated last. The solver is used for it, and
+  // dropped. The swing is a function of problem, tolerance, theta and the rates in y0 alone: bit-identical in every
+  // process and from every place and heading. False, and the orbit is left, where the motion is refused (building.cpp):
+  // the caller then steps through it from its start.
   bool enter(const FreeMotion& motion, solver::Solver& solver);
   void leave() { entry_ = {}; }
 
@@ -187,7 +186,7 @@ class Orbit {
  private:
   // The motion integrated last, if there was one; of no course where it was refused.
   bool has_integrated_ = false;
-  std::array<double, most_shape> shape_ = {};
+  std::array<double, longest_key> key_ = {};
   Swing swing_;
   Entry entry_;  // on it, of the present run
 };

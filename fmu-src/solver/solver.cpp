@@ -51,6 +51,12 @@ bool Solver::restart(const Problem& problem, Method method, double t, const doub
   return true;
 }
 
+void Solver::drop() {
+  problem_ = {};
+  pending_ = Outcome::failed;
+  failure_ = not_started;
+}
+
 void Solver::resume() {
   pending_ = Outcome::stepped;
   double y[max_states];

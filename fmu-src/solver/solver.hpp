@@ -31,6 +31,9 @@ class Solver {
   [[nodiscard]] bool start(const Problem& problem, Method method, double t, const double* y);
   [[nodiscard]] bool restart(const Problem& problem, Method method, double t, const double* y);
 
+  // The solution, the problem and its owner are not needed any more; nothing may be read until the next start.
+  void drop();
+
   // After an event that changes nothing of the motion, only what is watched: the same step goes on.
   void resume();
 
@@ -72,6 +75,8 @@ class Solver {
   [[nodiscard]] bool restore_history(const Problem& problem, Method method, support::Archive& archive);
 
  private:
+  static constexpr const char* not_started = "the solver was not started";
+
   Engine& engine() const { return *engines_[static_cast<int>(method_)]; }
   // Whether collocation solves a steep state, and not a slide.
   bool rests_in_law() const { return method_ == Method::collocation && problem_.steep && !problem_.turning; }
@@ -85,11 +90,11 @@ class Solver {
   Problem problem_ = {};
   Method method_ = Method::adams;
   Outcome pending_ = Outcome::failed;
-  const char* failure_ = "the solver was not started";  // null: see the engine
-  double known_until_ = 0;                              // s
-  int fallen_ = 0;                                      // which of the watched functions fell below zero last
-  double first_stop_ = never;                           // s, latest end of the first step after a start
-  double values_[max_watched] = {};  // of what is watched at each step, at its end or where the solution was resumed
+  const char* failure_ = not_started;  // null: see the engine
+  double known_until_ = 0;             // s
+  int fallen_ = 0;                     // which of the watched functions fell below zero last
+  double first_stop_ = never;          // s, latest end of the first step after a start
+  double values_[max_watched] = {};    // of what is watched at each step, at its end or where the solution was resumed
   Counters counters_ = {};
   // The dense output of the last step is computed when it is first needed: a pure function of the step.
   mutable Step step_ = {};

@@ -74,11 +74,11 @@ bool always(const Setup&, const InForce&) { return true; }
 bool always_ends(const Setup&) { return true; }
 
 // (N) => N over the weight
-double pressure_of(const Setup& setup, const double*, double N) { return N / setup.weight; }
+double contact_left(const Setup& setup, const double*, double N) { return N / setup.weight; }
 // (N) => below zero where it is infinite: the wheel jams
 double jam_left(const Setup&, const double*, double N) { return N < solver::never ? 1 : -1; }
 // (y) => rad from where the wheel counts as flat
-double height_of(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
+double lean_left(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
 void change_layer(const Setup& setup, double t, double* y, InForce& in_force) { decide_law(setup, t, y, in_force); }
 
@@ -111,7 +111,7 @@ constexpr EventRow event_rows[] = {
      .slides_anew = true},
     {.event = Event::lost_contact,
      .can_occur = always,
-     .quick_value = pressure_of,
+     .quick_value = contact_left,
      .rounding = 1e-9,
      .ends = [](const Setup& setup) { return !setup.keep_contact; },
      .bends_friction = true,
@@ -123,10 +123,10 @@ constexpr EventRow event_rows[] = {
      .in_model_exchange = false,
      .ends = always_ends,
      .ending = "jams (Painleve's paradox) with mu_slide",
-     .limit = [](const InForce& in_force) { return in_force.scene.mu_slide; }},
+     .limit = [](const InForce& in_force) { return in_force.mu_slide(); }},
     {.event = Event::lies_flat,
      .can_occur = always,
-     .quick_value = height_of,
+     .quick_value = lean_left,
      .ends = always_ends,
      .ending = "lies flat"},
 };

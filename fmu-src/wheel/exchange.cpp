@@ -42,7 +42,7 @@ double margin_at(const EventRow& row, const Record& r, double ahead = 0) {
   double x[state_count], x_dot[state_count], y[max_states] = {};
   std::copy_n(r.run.x, state_count, x);
   if (ahead > 0) {
-    rates_of_x(r, r.run.x, r.run.y, x_dot);
+    rates_of_x(r, r.run.x, r.run.y(), x_dot);
     for (int i = 0; i < state_count; ++i) x[i] += ahead * x_dot[i];
   }
   if (row.event != Event::lies_flat) keep_above_ground(x);
@@ -65,9 +65,9 @@ bool has_occurred(const EventRow& row, const Record& r) {
 // not, the caller has set the spin, and it is kept.
 bool is_led(const Record& r) {
   const WheelScene scene = r.run.in_force.scene_at(r.run.t);
-  const double spin = r.run.y[WHEEL_OMEGA_3] / r.setup.rate_scale;
+  const double spin = r.run.y()[WHEEL_OMEGA_3] / r.setup.rate_scale;
   if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
-  const double omega_z_dot = rates_of(r.setup, scene, r.run.y).y_dot[WHEEL_OMEGA_3];
+  const double omega_z_dot = rates_of(r.setup, scene, r.run.y()).y_dot[WHEEL_OMEGA_3];
   const double rate = scene.friction.sigma * omega_z_dot / r.setup.rate_scale;
   return scene.friction.sigma * spin >= std::fmin(rate, 0) * r.setup.longest_step - spin_error;
 }
@@ -84,7 +84,7 @@ Event ending_at(const Record& r) {
 bool decide_events(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
-  double& omega_z = run.y[WHEEL_OMEGA_3];
+  double& omega_z = run.y()[WHEEL_OMEGA_3];
   const double spin = omega_z;
   const bool led = is_led(w);
   if (before.law().kind == WHEEL_HELD && led) omega_z = 0;
@@ -98,9 +98,9 @@ bool decide_events(Wheel& w) {
     if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
   const InForce passed = run.in_force;
   if (const EventRow& spin_changes = event_row(Event::spin_changes); led && has_occurred(spin_changes, w))
-    follow_event(spin_changes, w.setup, run.t, run.y, run.in_force);
+    follow_event(spin_changes, w.setup, run.t, run.y(), run.in_force);
   else
-    decide_law(w.setup, run.t, run.y, run.in_force);
+    decide_law(w.setup, run.t, run.y(), run.in_force);
   note_changes(w, passed);
   if (end_if_due()) return false;  // under the law that was decided
   return omega_z != spin || differ(before.law(), run.in_force.law()) ||
@@ -128,7 +128,7 @@ void act_at_once(Wheel& w) {
   in_force.take_over(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs);
   w.run.pending = Pending::nothing;
   if (in_force.road == before.road || w.run.phase == Phase::event_mode) return;
-  decide_law(w.setup, w.run.t, w.run.y, in_force);
+  decide_law(w.setup, w.run.t, w.run.y(), in_force);
   note_changes(w, before);
 }
 
@@ -137,25 +137,25 @@ void enter(Wheel& w, Phase mode) {
   if (w.run.phase != Phase::ended) w.run.phase = mode;
 }
 
-void set_time(Wheel& w, double time) { w.run.t = w.run.y_time = time - w.demand.start_time; }
+void set_time(Wheel& w, double time) { w.run.set_time_alone(time - w.demand.start_time); }
 
 void set_states(Wheel& w, const double* x) {
   std::copy_n(x, state_count, w.run.x);
-  wheel_reduced_state(w.run.x, w.run.y);
+  wheel_reduced_state(w.run.x, w.run.y());
 }
 
 void set_state(Wheel& w, unsigned variable, double value) {
   for (int i = 0; i < state_count; ++i)
     if (states_of_x[i].variable == variable) w.run.x[i] = value;
-  wheel_reduced_state(w.run.x, w.run.y);
-  decide_law(w.setup, w.run.t, w.run.y, w.run.in_force);
+  wheel_reduced_state(w.run.x, w.run.y());
+  decide_law(w.setup, w.run.t, w.run.y(), w.run.in_force);
 }
 
 void read_states(const Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }
 
 void read_nominals(const Wheel& w, double* x) {
   double scales[max_states];
-  scales_at(w.setup, w.run.y[WHEEL_OMEGA_3], scales);
+  scales_at(w.setup, w.run.y()[WHEEL_OMEGA_3], scales);
   for (int i = 0; i < state_count; ++i) x[i] = scales[place_in_y(i)];
 }
 
@@ -182,14 +182,14 @@ bool has_event(Wheel& w) {
 
 bool decide_in_event_mode(Wheel& w) {
   const bool bends = decide_events(w);
-  w.run.x[WHEEL_EULER_OMEGA_Z] = w.run.y[WHEEL_OMEGA_3];  // all that an event changes of the state
+  w.run.x[WHEEL_EULER_OMEGA_Z] = w.run.y()[WHEEL_OMEGA_3];  // all that an event changes of the state
   return bends;
 }
 
 bool starts_inside(const Wheel& w) {
   const Event ending = ending_at(w);
   if (ending == Event::none) return true;
-  const WheelDynamics dynamics = dynamics_of(w.setup, w.run.in_force.scene_at(w.run.t), w.run.y);
+  const WheelDynamics dynamics = dynamics_of(w.setup, w.run.in_force.scene_at(w.run.t), w.run.y());
   w.reporter.log(Topic::error, "At the start the wheel %s (N = %s N, mu_required = %s): the run ends there.",
                  ending_of(w.run.in_force, ending).text, Digits{dynamics.lambda[2], 6},
                  Digits{wheel_required_friction(dynamics.lambda), 6});

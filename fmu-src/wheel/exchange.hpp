@@ -1,5 +1,6 @@
 // Model exchange. The caller's solver moves the states x (wheel_equations.h), from which y follows. An input acts from
-// the instant at which it is set. The law of friction is decided anew at events, and where a state or the road is set.
+// the instant at which it is set. The law of rolling resistance is decided anew at events, and where a state or the
+// road is set.
 #pragma once
 
 #include "wheel.hpp"
@@ -22,8 +23,8 @@ void enter(Wheel& wheel, Phase mode);
 // (time: s, the caller's)
 void set_time(Wheel& wheel, double time);
 void set_states(Wheel& wheel, const double* x);
-// Of a variable that is a state, by itself: the law of friction is decided for it. A state that is only tried is no
-// event, and nothing is logged.
+// Of a variable that is a state, by itself: the law of rolling resistance is decided for it. A state that is only tried
+// is no event, and nothing is logged.
 void set_state(Wheel& wheel, unsigned variable, double value);
 
 // Out: state_count numbers, or indicator_count() margins. A solver may try states beyond flat: there rates and margins,

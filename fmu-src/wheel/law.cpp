@@ -1,7 +1,7 @@
 // The laws of the contact: rolling resistance, the start and the end of a slide.
 //
-// decide_contact asks whether the wheel grips. If so, decide_law chooses the law of friction. If not, begin_slide
-// chooses the direction of the slip and the law, each of which depends on the other.
+// decide_contact asks whether the wheel grips. If so, decide_law chooses the law of rolling resistance. If not,
+// begin_slide chooses the direction of the slip and the law, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
 // (scene, braked: whether a brake is in use, y) => the law
-WheelFriction friction_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
+WheelFriction law_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
   const double omega_z = y[WHEEL_OMEGA_3];
   const bool regularized = setup.friction_law == regularized_law;
@@ -53,10 +53,10 @@ bool rests(const Demand& demand, const double* y) {
          y[WHEEL_OMEGA_1] == 0 && y[WHEEL_OMEGA_2] == 0;
 }
 
-WheelMotion motion_of(const Setup& setup, const WheelScene& scene, const double* y) {
+WheelMotion motion_of(const Setup& setup, WheelContactMode contact, const double* y) {
   WheelKinematics k;
-  formulation_of(setup, scene.contact).kinematics(&setup.scene.wheel, y, &k);
-  const double u = scene.contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
+  formulation_of(setup, contact).kinematics(&setup.wheel, y, &k);
+  const double u = contact == WHEEL_SLIDES ? y[WHEEL_SLIP] : 0;
   const double slip_x = u * std::cos(y[WHEEL_CHI]), slip_y = u * std::sin(y[WHEEL_CHI]);
   return {k.psi, k.theta, k.phi, k.psi_dot, k.theta_dot, k.phi_dot, k.X_O, k.Y_O, slip_x, slip_y};
 }
@@ -68,25 +68,25 @@ WheelMotion motion_of(const Setup& setup, const WheelScene& scene, const double*
 //   a wheel outside the layer of a regularized law has the whole law, because it may enter the layer.
 void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y) {
   if (rests(demand, y)) return;
-  WheelMotion motion = motion_of(setup, scene, y);
+  WheelMotion motion = motion_of(setup, scene.contact, y);
   WheelScene ramp = scene;
-  ramp.friction = friction_at(setup, scene, scene.load.brake > 0, y);
+  ramp.friction = law_at(setup, scene, scene.load.brake > 0, y);
   const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
   const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
   if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)
     ramp.friction = {WHEEL_REGULARIZED, 0, setup.omega_s};
   wheel_jump(&ramp, hold, demand.value(variable::psi_dot_guide), demand.value(variable::theta_dot_guide), &motion);
-  start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+  start_state(formulation_of(setup, scene.contact), setup.wheel, motion, y);
 }
 
 }  // namespace
 
-void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y) {
+void start_guide_rates(const Setup& setup, const Demand& demand, double* y) {
   if (rests(demand, y)) return;
-  WheelMotion motion = motion_of(setup, scene, y);
+  WheelMotion motion = motion_of(setup, setup.first_contact, y);
   motion.psi_dot = demand.value(variable::psi_dot_guide);
   motion.theta_dot = demand.value(variable::theta_dot_guide);
-  start_state(formulation_of(setup, scene.contact), setup.scene.wheel, motion, y);
+  start_state(formulation_of(setup, setup.first_contact), setup.wheel, motion, y);
 }
 
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force) {
@@ -99,7 +99,7 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& in_force) 
   const bool slips_on = in_force.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
   if (!setup.sliding || slips_on) return decide_law(setup, t, y, in_force);
   if (in_force.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
-  in_force.scene.contact = WHEEL_GRIPS;
+  in_force.set_contact(WHEEL_GRIPS);
   decide_law(setup, t, y, in_force);
   if (grip_left(setup, in_force, t, y) >= 0) return;
   // N depends on the horizontal force: a wheel that would lift off while it grips may press the road while it slides.
@@ -110,22 +110,22 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& in_force) 
 }
 
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force) {
-  in_force.scene.friction = friction_at(setup, in_force.scene_at(t), in_force.inputs.braked, y);
+  in_force.set_law(law_at(setup, in_force.scene_at(t), in_force.inputs.braked, y));
 }
 
 WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y) {
-  return friction_at(setup, scene, true, y);
+  return law_at(setup, scene, true, y);
 }
 
 void release(const Setup& setup, double t, const double* y, InForce& in_force) {
-  in_force.scene.friction = released_from(hold_at(setup, in_force.scene_at(t), y));
+  in_force.set_law(released_from(hold_at(setup, in_force.scene_at(t), y)));
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force) {
-  in_force.scene.contact = WHEEL_SLIDES;
+  in_force.set_contact(WHEEL_SLIDES);
   WheelScene scene = in_force.scene_at(t);
   const auto take = [&](const WheelFriction& law) {
-    in_force.scene.friction = law;
+    in_force.set_law(law);
     scene.friction = law;
     y[WHEEL_SLIP] = 2 * least_slip(setup, t);
     y[WHEEL_CHI] = first_direction(scene, y);
@@ -136,7 +136,7 @@ void begin_slide(const Setup& setup, double t, double* y, InForce& in_force) {
       if (agrees(setup, scene, y)) break;
     }
   } else {
-    take(friction_at(setup, scene, in_force.inputs.braked, y));
+    take(law_at(setup, scene, in_force.inputs.braked, y));
   }
 }
 

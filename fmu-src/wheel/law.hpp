@@ -6,7 +6,7 @@
 //   enforce           road, inputs; then as below     at the start, at a step after something was set, for a reading
 //   decide_contact    contact, law, slip              by enforce, and where a slip ends
 //   decide_law        law                             by decide_contact, at events of the spin, in model exchange
-//   release           law                             where friction and brake can no longer hold the wheel
+//   release           law                             where resistance and brake cannot hold the wheel
 //   begin_slide       contact, law, slip              by decide_contact, and where the grip is lost
 // The sides of the ground are written by InForce::cross (run.hpp), at events and where a run leaves its orbit. Nothing
 // here counts or logs: transitions.hpp does.
@@ -22,21 +22,21 @@ namespace wheel {
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force);
 
 // (y) => y of a wheel whose carrier has always turned at the rates asked for
-void start_guide_rates(const Setup& setup, const Demand& demand, const WheelScene& scene, double* y);
+void start_guide_rates(const Setup& setup, const Demand& demand, double* y);
 
 // (t, y) => contact, law, slip in y. A slip above the least goes on. Else the wheel rolls where it can; where it
 // cannot, it begins to slide, unless it lifts off.
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force);
 
-// (t, y) => law of friction. At omega_z = 0 the exact law follows Filippov: the wheel is held where the moment that
-// holds it is within s N + M_brake, else it rolls against that moment. A regularized law depends on whether omega_z
-// lies in its layer.
+// (t, y) => law of rolling resistance. At omega_z = 0 the exact law follows Filippov: the wheel is held where the
+// moment that holds it is within s N + M_brake, else it rolls against that moment. A regularized law depends on whether
+// omega_z lies in its layer.
 void decide_law(const Setup& setup, double t, const double* y, InForce& in_force);
 
 // (scene, y) => the law where a brake is in use, even if its capacity is zero
 WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y);
 
-// (t, y) => law of friction of a wheel that friction and brake can no longer hold
+// (t, y) => law of rolling resistance of a wheel that resistance and brake can no longer hold
 void release(const Setup& setup, double t, const double* y, InForce& in_force);
 
 // (t, y without slip) => contact, law, slip in y. The wheel starts to slide, in the direction in which Coulomb's law

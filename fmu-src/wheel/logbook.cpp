@@ -38,10 +38,12 @@ void look_at_grip(Wheel& wheel, double t) {
                        shown_time(wheel, t), Digits{mu, 3});
 }
 
-void warn_of_jam(const Wheel& wheel, const Instant& instant) {
-  const InForce& in_force = instant.in_force;
-  if (wheel.run.pending != Pending::set || !in_force.slides()) return;
-  if (margin_of(event_row(Event::jams), wheel.setup, in_force, instant.t, instant.y) < 0)
+void warn_of_jam(const Wheel& wheel) {
+  if (wheel.run.pending != Pending::set || !wheel.setup.sliding) return;
+  double y[max_states];
+  read_state(wheel, y);
+  const InForce in_force = in_force_now(wheel, y);
+  if (in_force.slides() && margin_of(event_row(Event::jams), wheel.setup, in_force, wheel.run.t, y) < 0)
     wheel.reporter.log(Topic::warning, "t = %s s: the wheel %s.", shown_time(wheel, wheel.run.t),
                        ending_of(in_force, Event::jams).text);
 }
@@ -60,7 +62,7 @@ void log_ending(Wheel& wheel, Event event) {
   if (event == Event::lost_contact && run.in_force.scene_at(run.t).load.F[2] > 0)
     wheel.reporter.log(Topic::warning, "F_Z > 0 lifts the wheel; a load on it is a negative F_Z.");
   wheel.reporter.log(Topic::discard, "The wheel %s at t = %s s, theta = %s rad: the run ends there.",
-                     ending_of(run.in_force, event).text, wheel.time(), Digits{run.y[WHEEL_THETA], 6});
+                     ending_of(run.in_force, event).text, wheel.time(), Digits{run.y()[WHEEL_THETA], 6});
   if (wheel.endings == most_logged)
     wheel.reporter.log(Topic::discard, "%lld ends were logged; further ones are not logged until a reset.",
                        most_logged);

@@ -15,7 +15,7 @@ void log_observation(Wheel& wheel, Event event, double t);
 void look_at_grip(Wheel& wheel, double t);
 // Where a road that was set makes the wheel jam at this instant: no force satisfies the equations there, and the next
 // step ends the run.
-void warn_of_jam(const Wheel& wheel, const Instant& instant);
+void warn_of_jam(const Wheel& wheel);
 
 // Of very many endings, as in a search that goes back and tries again, the first ones alone are logged.
 void log_ending(Wheel& wheel, Event event);

@@ -56,7 +56,7 @@ Result start_solver(Wheel& w) {
   const solver::Problem problem = problem_of(w);
   const auto method = method_of(w.setup, w.run.in_force);
   const bool done =
-      again ? solver.restart(problem, method, w.run.t, w.run.y) : solver.start(problem, method, w.run.t, w.run.y);
+      again ? solver.restart(problem, method, w.run.t, w.run.y()) : solver.start(problem, method, w.run.t, w.run.y());
   return done ? Result() : failed();
 }
 
@@ -70,8 +70,8 @@ Result apply_demand(Wheel& w) {
   run.pending = Pending::nothing;
   if (!changed) return {};
   const InForce before = run.in_force;
-  if (run.phase == Phase::unfolded) find_below(w.setup, run.t, run.y, run.in_force);
-  enforce(w.setup, w.demand, run.t, run.y, run.in_force);
+  if (run.phase == Phase::unfolded) find_below(w.setup, run.t, run.y(), run.in_force);
+  enforce(w.setup, w.demand, run.t, run.y(), run.in_force);
   note_changes(w, before);
   if (run.phase == Phase::at_start) return {};
   const double interval = run.t - run.last_change;
@@ -84,36 +84,36 @@ Result apply_demand(Wheel& w) {
 }
 
 // The numbers that determine the motion on an orbit.
-using Shape = std::array<double, first_input + 2>;
-static_assert(std::tuple_size_v<Shape> <= orbit::most_shape);
-Shape shape_of(const Record& record) {
-  Shape shape;
-  std::copy_n(record.demand.parameters, first_input, shape.begin());
+using Key = std::array<double, first_input + 2>;
+static_assert(std::tuple_size_v<Key> <= orbit::longest_key);
+Key key_of(const Record& record) {
+  Key key;
+  std::copy_n(record.demand.parameters, first_input, key.begin());
   for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
-    shape[v] = 0;
-  shape[first_input] = record.demand.tolerance;
-  shape[first_input + 1] = record.run.can_slide;
-  return shape;
+    key[v] = 0;
+  key[first_input] = record.demand.tolerance;
+  key[first_input + 1] = record.run.can_slide;
+  return key;
 }
 
-// Enters the orbit of this run, or of an earlier one of the same shape. False where the motion does not repeat: the
+// Enters the orbit of this run, or of an earlier one with the same key. False where the motion does not repeat: the
 // solver has to step through it.
 bool enter_orbit(Wheel& w) {
   const InForce& in_force = w.run.in_force;
   const bool acted_on = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.inputs.loaded || in_force.road.slope != 0;
   // A carrier that turned at the start, and has stopped since, has turned the wheel away from its initial state.
   const bool turned =
-      w.run.phase == Phase::at_start && !std::equal(w.run.y, w.run.y + max_states, w.setup.initial_state);
+      w.run.phase == Phase::at_start && !std::equal(w.run.y(), w.run.y() + max_states, w.setup.initial_state);
   if (!w.setup.unfolds || acted_on || in_force.slides() || turned) return false;
   Record ahead = static_cast<const Record&>(w);  // events on the orbit are in force for it alone, not yet for the run
-  const Shape shape = shape_of(w);
+  const Key key = key_of(w);
   const orbit::FreeMotion motion = {problem_of(ahead),
                                     w.demand.tolerance,
                                     w.setup.time_scale,
                                     follow_on_orbit,
                                     w.setup.initial_state,
                                     largest_angle,
-                                    shape};
+                                    key};
   const bool entered = w.orbit.enter(motion, w.solver);
   if (entered) w.run.counted = w.orbit.course().counters;
   return entered;
@@ -212,15 +212,15 @@ void arrive(Wheel& w, double t) {
   move_to(w, t);
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return;
-  w.demand.hold(inputs, t);
-  w.run.pending = Pending::held_inputs;
+  w.demand.end_slopes(inputs, t);
+  w.run.pending = Pending::ended_slopes;
 }
 
 // A step has failed: the state is that before the step, and stays so.
 void fail(Wheel& w, const Run& before, const char* failure) {
   if (w.run.phase == Phase::stepping) move_to(w, w.solver.known_until());
   update_state(w);
-  const double spin = w.run.y[WHEEL_OMEGA_3], slip = before.in_force.slides() ? before.y[WHEEL_SLIP] : 0;
+  const double spin = w.run.y()[WHEEL_OMEGA_3], slip = before.in_force.slides() ? before.y()[WHEEL_SLIP] : 0;
   w.reporter.log(
       Topic::error,
       "The solver stopped at t = %s s, where omega_z = %s rad/s, in a step that began with a slip of %s m/s: %s.",

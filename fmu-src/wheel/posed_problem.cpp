@@ -14,18 +14,13 @@ namespace {
 
 const Record& record_of(const void* owner) { return *static_cast<const Record*>(owner); }
 
-// (t) => the scene, which every evaluation asks for. It is copied only where an input varies.
-const WheelScene& scene_at(const InForce& in_force, double t, WheelScene& room) {
-  return in_force.inputs.varies ? room = in_force.scene_at(t) : in_force.scene;
-}
-
 // (t, y) => y_dot; returns the least margin. A problem of eight states is that of a wheel that rolls.
 template <int states>
 double derivative(void* owner, double t, const double* y, double* y_dot) {
   const Setup& setup = record_of(owner).setup;
   const InForce& in_force = record_of(owner).run.in_force;
   WheelScene room;
-  const WheelScene& scene = scene_at(in_force, t, room);
+  const WheelScene& scene = in_force.scene_at(t, room);
   const WheelFormulation& formulation =
       states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
   const double N = formulation.derivative(&scene, y, y_dot);
@@ -84,7 +79,7 @@ double margin(void* owner, int event, double t, const double* y) {
 // where a slip settles. The collocation's iteration converges with it, to the solution that it has with each one's own.
 void slopes_of_turning(void* owner, double t, const double* y, std::span<const double> chi, double* slopes, double*) {
   WheelScene room;
-  const WheelScene& scene = scene_at(record_of(owner).run.in_force, t, room);
+  const WheelScene& scene = record_of(owner).run.in_force.scene_at(t, room);
   std::fill_n(slopes, chi.size(), -wheel_slip(&scene, y, chi.back()).settling);
 }
 
@@ -120,7 +115,7 @@ solver::Problem problem_of(Record& record) {
   const Setup& setup = record.setup;
   const InForce& in_force = record.run.in_force;
   solver::Problem problem = {};
-  const bool few = formulation_of(setup, in_force.scene.contact).states == WHEEL_REDUCED_STATES;
+  const bool few = formulation_of(setup, in_force.contact()).states == WHEEL_REDUCED_STATES;
   problem.states = few ? WHEEL_REDUCED_STATES : max_states;
   problem.owner = &record;
   problem.derivative = few ? derivative<WHEEL_REDUCED_STATES> : derivative<max_states>;
@@ -132,7 +127,7 @@ solver::Problem problem_of(Record& record) {
   problem.longest_step = setup.longest_step;
   if (in_force.law().kind == WHEEL_REGULARIZED) {
     problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
-    const double rate = rates_of(setup, in_force.scene_at(record.run.t), record.run.y).y_dot[WHEEL_OMEGA_3];
+    const double rate = rates_of(setup, in_force.scene_at(record.run.t), record.run.y()).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
   }
   if (in_force.slides()) problem.turning = {WHEEL_CHI, WHEEL_SLIP, slopes_of_turning};

@@ -12,21 +12,27 @@ WheelGround ground_of(const InForce& in_force) {
 
 }  // namespace
 
+InForce::InForce(const Setup& setup) {
+  scene_.wheel = setup.wheel;
+  scene_.guided = setup.guided;
+  scene_.contact = setup.first_contact;
+}
+
 void InForce::take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials) {
   road = asked;
-  scene.wheel = setup.scene.wheel;
-  scene.wheel.s = road.s;
-  if (road.slope != 0) wheel_set_slope(&scene.wheel, setup.scene.wheel.g_n, road.slope, road.slope_direction);
-  scene.mu_slide = std::fmin(road.mu_slide, road.mu_max);
-  scene.guided = setup.scene.guided;
-  scene.ground = ground_of(*this);
+  scene_.wheel = setup.wheel;
+  scene_.wheel.s = road.s;
+  if (road.slope != 0) wheel_set_slope(&scene_.wheel, setup.wheel.g_n, road.slope, road.slope_direction);
+  scene_.mu_slide = std::fmin(road.mu_slide, road.mu_max);
+  scene_.guided = setup.guided;
+  scene_.ground = ground_of(*this);
   inputs.take_over(t, polynomials);
-  inputs.set_load_at(t, scene.load);
+  inputs.set_load_at(t, scene_.load);
 }
 
 void InForce::cross(Event event) {
   below[static_cast<int>(event)] = !is_below(event);
-  scene.ground = ground_of(*this);
+  scene_.ground = ground_of(*this);
 }
 
 }  // namespace wheel

@@ -1,6 +1,8 @@
-// The phases of a run, what is in force with the law of friction, and how far it has come. Plain numbers: a run is
-// restored by assignment.
+// The phases of a run, what is in force, and how far it has come. Plain numbers: a run is restored by assignment.
 #pragma once
+
+#include <algorithm>
+#include <cassert>
 
 #include "setup.hpp"
 #include "solver.hpp"
@@ -24,7 +26,7 @@ enum class Phase : int {
   at_start,         // initialization has ended, and no step has been made
   stepping,         // the solver steps through the motion
   unfolded,         // the motion is read from the orbit; nothing is integrated
-  event_mode,       // model exchange: the law of friction is decided
+  event_mode,       // model exchange: the law of rolling resistance is decided
   continuous_time,  // model exchange: the caller's solver moves the states
   ended,            // the model has ended, by an event
   closed,           // the caller has ended the run
@@ -42,7 +44,7 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 enum class Event : int {
   none,
   changes_layer,  // omega_z enters or leaves the layer of a regularized law
-  spin_changes,   // omega_z reaches zero, or friction and brake can no longer hold it there
+  spin_changes,   // omega_z reaches zero, or rolling resistance and brake can no longer hold it
   lost_grip,      // the wheel needs a friction coefficient above mu_max
   slip_ends,      // the slip falls to zero
   lost_contact,   // N falls below zero, or rises above it while the ground pulls
@@ -65,59 +67,91 @@ inline Road road_asked(const Demand& demand) {
 
 // What acts on the wheel, and the scene that follows from it for the equations. These are plain numbers, and while a
 // run goes on, each has one writer.
-struct InForce {
+class InForce {
+ public:
   // Written by take_over: the road as it was asked for, and the inputs.
   Road road = {};
   Inputs inputs;
   // Written by cross: whether the value of an observed event has fallen below zero and has not risen since.
   bool below[event_count] = {};
-  // law.cpp decides contact and law; until then there is no law. The rest follows from the members above, with the load
-  // at the instant from which the inputs count: scene_at has that of any other.
-  WheelScene scene = {};
 
   InForce() = default;
-  // The state before anything is set: a level road, and no inputs.
-  explicit InForce(const Setup& setup) : scene(setup.scene) {}
+  // The state before anything is set: a level road, no inputs and no law.
+  explicit InForce(const Setup& setup);
   // Road and inputs are in force from t on. A mu_max that was set below mu_slide counts for both.
   void take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials);
   // The value of an observed event changes its sign.
   void cross(Event event);
+  // Decided in law.cpp: the law of rolling resistance and brake, and whether the wheel grips or slides.
+  void set_law(const WheelFriction& law) { scene_.friction = law; }
+  void set_contact(WheelContactMode contact) { scene_.contact = contact; }
 
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
-  const WheelFriction& law() const { return scene.friction; }
-  bool slides() const { return scene.contact == WHEEL_SLIDES; }
+  const WheelFriction& law() const { return scene_.friction; }
+  WheelContactMode contact() const { return scene_.contact; }
+  bool slides() const { return scene_.contact == WHEEL_SLIDES; }
+  WheelGround ground() const { return scene_.ground; }
+  double mu_slide() const { return scene_.mu_slide; }
 
-  WheelScene scene_at(double t) const {
-    WheelScene at_t = scene;
-    if (inputs.varies) inputs.set_load_at(t, at_t.load);
-    return at_t;
+  WheelScene scene_at(double t) const { return inputs.varies ? loaded_at(t) : scene_; }
+  // The same, which is copied into `room` only where an input varies.
+  const WheelScene& scene_at(double t, WheelScene& room) const { return inputs.varies ? room = loaded_at(t) : scene_; }
+
+ private:
+  WheelScene loaded_at(double t) const {
+    WheelScene scene = scene_;
+    inputs.set_load_at(t, scene.load);
+    return scene;
   }
+
+  WheelScene scene_ = {};  // with the load at the instant from which the inputs count
 };
 
 // How the demand differs from what is in force. For example, the caller sets F_X = 1 N with the derivative 10 N/s
-// (`set`: a reading shows it at once), and steps by 0.1 s (`nothing` within the step). At its end the demand holds F_X
-// = 2 N without a derivative (`held_inputs`), while a reading still has the slope of the step. If the caller sets F_X =
-// 2 N once more, the slope has ended (`set`).
-enum class Pending : unsigned char { nothing, held_inputs, set };
+// (`set`: a reading shows it at once), and steps by 0.1 s (`nothing` within the step). At its end the demand has F_X
+// = 2 N without a derivative (`ended_slopes`), while a reading still has the slope of the step. If the caller sets F_X
+// = 2 N once more, the slope has ended (`set`).
+enum class Pending : unsigned char { nothing, ended_slopes, set };
 
-struct Run {
+class Run {
+ public:
   Phase phase = Phase::created;
   Event ended_by = Event::none;
   Pending pending = Pending::nothing;
   bool can_slide = false;  // mu_slide was above 0 at the start: whatever it is later, the wheel can slide
   InForce in_force;
-  double t = 0;  // s, clock of the run: the instant reached
-  // y is the state at y_time, s, clock of the run. A communication step along a motion that is known already moves t
-  // alone, so y may lag behind. update_state brings it to t. Every longer way begins with update_state: a step that
-  // asks more of the solution, an event, an end, a snapshot. The functions on that way take y as the state at t.
-  double y_time = 0;
-  double y[max_states] = {};
+  double t = 0;            // s, clock of the run: the instant reached
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
   bool logged[event_count] = {};      // of each event that is observed: it has occurred, and was logged
   long long transitions = 0;          // between kinds of friction, and between rolling and sliding
   solver::Counters counted = {};      // all but those of the solver at work
+
+  // The state at t. A communication step along a motion that is known already moves t alone, and the state lags behind.
+  // Every longer way begins with update_state (wheel.hpp), which brings it to t: a step that asks more of the solution,
+  // an event, an end, a snapshot.
+  double* y() {
+    assert(!lags());
+    return y_;
+  }
+  const double* y() const {
+    assert(!lags());
+    return y_;
+  }
+  bool lags() const { return y_time_ != t; }
+  const double* latest_y() const { return y_; }  // even if it lags
+  // (y at t)
+  void set_y(const double* y) {
+    std::copy_n(y, max_states, y_);
+    y_time_ = t;
+  }
+  // Model exchange: another instant, at which the caller's states stay until they are set.
+  void set_time_alone(double time) { t = y_time_ = time; }
+
+ private:
+  double y_time_ = 0;  // s, clock of the run
+  double y_[max_states] = {};
 };
 
 // All counts of a run.

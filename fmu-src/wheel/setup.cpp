@@ -26,7 +26,7 @@ void set_scales(Setup& setup, const WheelKinematics& start) {
   CONSTANT(double, longest, 0.6, "time scales",
            "at an unstable rest the error estimate is zero: steps would grow without limit");
   CONSTANT(double, least_gravity, 1e-30, "of length times rate squared", "a smaller one has no part in the motion");
-  const WheelParameters& wheel = setup.scene.wheel;
+  const WheelParameters& wheel = setup.wheel;
   const double gravity = wheel.g_n, length = wheel.r_0 + wheel.r;
   const double rate = std::fabs(start.psi_dot) + std::fabs(start.theta_dot) + std::fabs(start.phi_dot);
   const bool matters = gravity > least_gravity * length * rate * rate;
@@ -59,13 +59,13 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   using namespace variable;
   const Row& row = row_of(v);
   const Digits shown = {value, 9};
-  const Limit passed = broken_limit(v, value);
+  const Limit broken = broken_limit(v, value);
   if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
   if (v == theta_start)
     return reporter.check(angle_from_flat(value) > flat_angle,
                           "%s = %s rad: the wheel must stand, more than %s rad from lying flat at 0 and at pi.",
                           row.name, shown, Digits{flat_angle, 6});
-  return reporter.check(!passed.message, passed.message, row.name, shown, Digits{passed.value, 6});
+  return reporter.check(!broken.message, broken.message, row.name, shown, Digits{broken.value, 6});
 }
 
 // Chooses the equations of rolling and of sliding by the formulation.
@@ -77,7 +77,7 @@ void choose_equations(Setup& setup, const Demand& demand, bool can_slide) {
 
 }  // namespace
 
-void Demand::hold(const Inputs& arrived, double t) {
+void Demand::end_slopes(const Inputs& arrived, double t) {
   for (int i = 0; i < inputs_count; ++i) {
     std::fill_n(inputs[i] + 1, max_order, 0.0);
     inputs[i][0] = arrived.value_of(i, t);
@@ -133,16 +133,16 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   const double* v = demand.parameters;
   Setup setup = {};
   setup.model_exchange = demand.kind == Kind::model_exchange;
-  setup.scene.guided = v[guided] != 0;
+  setup.guided = v[guided] != 0;
   choose_equations(setup, demand, can_slide);
   // clang-format off
-  setup.scene.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
+  setup.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
                  .s = 0, .g_X = 0, .g_Y = 0};
   // clang-format on
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds = (v[J_x] == v[J_y] || setup.scene.guided) && choice_of(v[formulation]) == automatic_formulation &&
+  setup.unfolds = (v[J_x] == v[J_y] || setup.guided) && choice_of(v[formulation]) == automatic_formulation &&
                   setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
@@ -154,10 +154,10 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   const WheelMotion motion = {setup.psi.state,  v[theta_start],  setup.phi.state, v[psi_dot_start], v[theta_dot_start],
                               v[phi_dot_start], setup.X_O.state, setup.Y_O.state, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
-  if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.scene.contact = WHEEL_SLIDES;
-  const WheelFormulation& formulation = formulation_of(setup, setup.scene.contact);
-  start_state(formulation, setup.scene.wheel, motion, setup.initial_state);
-  formulation.kinematics(&setup.scene.wheel, setup.initial_state, &start);
+  if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.first_contact = WHEEL_SLIDES;
+  const WheelFormulation& formulation = formulation_of(setup, setup.first_contact);
+  start_state(formulation, setup.wheel, motion, setup.initial_state);
+  formulation.kinematics(&setup.wheel, setup.initial_state, &start);
   set_scales(setup, start);
   set_error_scales(setup);
   return setup;

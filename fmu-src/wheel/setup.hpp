@@ -25,7 +25,7 @@ static_assert(max_states == WHEEL_SLIDING_STATES);
 enum class Kind : int { co_simulation, model_exchange };
 
 // Parameters and tolerance make the setup. Inputs, their derivatives and the road may be set
-// again later, and are in force from the next step on. Inputs have two writers: the caller, and `hold`.
+// again later, and are in force from the next step on. Inputs have two writers: the caller, and `end_slopes`.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
@@ -34,7 +34,7 @@ struct Demand {
 
   // At the end of a step, at t, s, clock of the run: a derivative counts for one step, and every input stays where it
   // arrived.
-  void hold(const Inputs& arrived, double t);
+  void end_slopes(const Inputs& arrived, double t);
 
   // The value of a stored variable, or for k > 0 a coefficient of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
@@ -57,9 +57,9 @@ struct Setup {
   bool model_exchange;                  // another solver moves the states
   const WheelFormulation* formulation;  // while the wheel rolls
   const WheelFormulation* sliding;      // while it slides; null: it never does
-  // The scene of the start. It says whether the wheel slides and whether it is guided. Road, loads and law are part of
-  // the run: here the road is level, and s = 0.
-  WheelScene scene;
+  WheelParameters wheel;                // on a level road, and s = 0: the road is part of the run
+  WheelContactMode first_contact;       // at the start
+  bool guided;
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
@@ -81,7 +81,7 @@ struct Setup {
   // take the law as it is. Outside, it equals the exact law to the last digit, and is replaced by it. In model exchange
   // the other solver gets the whole law.
   bool has_layer() const { return friction_law == regularized_law && !model_exchange; }
-  bool steered() const { return scene.guided && !model_exchange; }  // the carrier turns at the rates that are inputs
+  bool steered() const { return guided && !model_exchange; }  // the carrier turns at the rates that are inputs
   bool is_multibody() const { return formulation == &wheel_multibody; }
 };
 

@@ -1,43 +1,26 @@
-// Difference quotients of fourth order. The reactions are linear in the load, so quotients by an input are exact up to
-// rounding. The derivative of a variable that is not linear in the forces follows from those of forces and motion
-// (Row::by_force). A rate that another variable has is read there (Row::read_rate).
+// Derivatives by difference quotients (quotients.hpp). The reactions are linear in the load, so quotients by an input
+// are exact up to rounding. The derivative of a variable that is not linear in the forces follows from those of forces
+// and motion (Row::by_force). A rate that another variable has is read there (Row::read_rate).
 #include "slopes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 
-#include "constant.hpp"
 #include "exchange.hpp"
 #include "law.hpp"
+#include "quotients.hpp"
 
 namespace wheel {
 namespace {
 
-CONSTANT(double, first_part, 1e-3, "of the scale", "a step in which an error of fourth order is that of rounding");
-
-// Four places, in steps from x, and two sets of weights of f there. The first gives the slope, exactly for polynomials
-// of degree four. The second shows a bend, by third and fourth differences: their sum about x, and with half of the
-// third to one side, where a limit is near.
-struct Stencil {
-  int places[4];
-  double weights[4], bend[4];
-};
-constexpr Stencil stencils[] = {{{-2, -1, 1, 2}, {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, {0.5, -3, -5, 1.5}},
-                                {{1, 2, 3, 4}, {4, -3, 4.0 / 3, -1.0 / 4}, {-2.5, 4.5, -3.5, 1}},
-                                {{-1, -2, -3, -4}, {-4, 3, -4.0 / 3, 1.0 / 4}, {-2.5, 4.5, -3.5, 1}}};
-
 // The derivatives of the variables that are asked for by one quantity x: `ask` for each, `take` or `refine` once, and
 // read them by `of`. `at`: (x) => the instant with this value of x, or none where there is no such wheel.
-class Quotients {
+class Slopes {
  public:
-  Quotients() { error_.fill(std::numeric_limits<double>::quiet_NaN()); }
-
   void ask(unsigned variable) {
     asked_[variable - stored_count] = true;
     asks_what_acts_ |= row_of(variable).by_force != nullptr;
@@ -46,39 +29,29 @@ class Quotients {
   // With steps of h. tau_rate: the part of the rate of tau that the instants leave out.
   template <class At>
   void take(double x, double h, const At& at, double tau_rate = 0) {
-    step(stencils[0], x, h, at);
+    quotients_.take(x, h, [&](double moved) { return numbers_of(at(moved)); });
     complete(tau_rate);
   }
 
-  // With smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
-  //   all derivatives are exact;
-  //   the step is as small as rounding;
-  //   none of the first steps is possible: false.
+  // With steps that become smaller, for what bends within the first; false where none is possible.
   template <class At>
   bool refine(double x, double scale, const At& at) {
-    constexpr double finest = std::numeric_limits<double>::epsilon();
-    CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
-    bool done = false;
-    double part = first_part;
-    while (part > (done ? finest : finest_first) && !settle(scale)) {
-      done |= std::any_of(std::begin(stencils), std::end(stencils),
-                          [&](const Stencil& stencil) { return step(stencil, x, part * scale, at); });
-      part *= 0.1;
-    }
+    const bool done = quotients_.refine(x, scale, [&](double moved) { return numbers_of(at(moved)); });
     complete(0);
     return done;
   }
 
-  double of(unsigned variable) const { return slope_[variable - stored_count]; }
+  double of(unsigned variable) const { return slopes_[variable - stored_count]; }
 
  private:
   using Parts = std::array<double, sizeof(Acting) / sizeof(double)>;
-  static constexpr std::size_t computed = variable_count - stored_count, count = computed + std::tuple_size_v<Parts>;
+  static constexpr std::size_t computed = variable_count - stored_count;
   // Of the computed variables, and behind them, where one needs it, of what acts.
-  using Numbers = std::array<double, count>;
+  using Numbers = std::array<double, computed + std::tuple_size_v<Parts>>;
 
-  Numbers sample(const Instant& instant) const {
-    Reading reading(instant);
+  std::optional<Numbers> numbers_of(const std::optional<Instant>& instant) const {
+    if (!instant) return std::nullopt;
+    Reading reading(*instant);
     Numbers numbers = {};
     for (unsigned k = 0; k < computed; ++k)
       if (asked_[k]) numbers[k] = row_of(stored_count + k).read(reading);
@@ -93,78 +66,42 @@ class Quotients {
     return std::bit_cast<Acting>(parts);
   }
 
-  // Of several steps, each derivative is that with the least error. Differences from the value at x itself, so that
-  // what does not depend on x has the derivative zero.
-  template <class At>
-  bool step(const Stencil& stencil, double x, double h, const At& at) {
-    const std::optional<Instant> centre = at(x);
-    if (!centre) return false;
-    centre_ = sample(*centre);
-    Numbers quotient = {}, bend = {};
-    for (int k = 0; k < 4; ++k) {
-      const std::optional<Instant> beside = at(x + stencil.places[k] * h);
-      if (!beside) return false;
-      const Numbers numbers = sample(*beside);
-      for (std::size_t i = 0; i < count; ++i) {
-        quotient[i] += stencil.weights[k] * (numbers[i] - centre_[i]) / h;
-        bend[i] += stencil.bend[k] * (numbers[i] - centre_[i]) / h;
-      }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double size = std::fabs(quotient[i]);
-      const double rounding =
-          std::numeric_limits<double>::epsilon() * (std::fabs(centre_[i]) + std::fabs(x) * size) / h;
-      // The bend of a smooth function is of the order h^2, and the error is of the order h^4. So the error is about the
-      // square of the bend, over the slope. A bend of zero shows nothing, and leaves rounding alone.
-      const double likely = (bend[i] == 0 ? 0 : bend[i] * bend[i] / std::fmax(size, rounding)) + rounding;
-      if (exact_[i] || likely >= error_[i]) continue;
-      slope_[i] = quotient[i];
-      error_[i] = likely;
-    }
-    return true;
-  }
-
-  // Marks the derivatives that are exact; true if all are. scale: of the variable.
-  bool settle(double scale) {
-    CONSTANT(double, relative, 1e-11, "1", "error of a derivative that counts as exact");
-    for (std::size_t i = 0; i < count; ++i)
-      exact_[i] |= error_[i] <= relative * (std::fabs(slope_[i]) + std::fabs(centre_[i]) / scale);
-    return std::all_of(exact_.begin(), exact_.end(), [](bool of) { return of; });
-  }
-
   // What is not linear in the forces follows from them.
   void complete(double tau_rate) {
-    slope_[variable::tau - stored_count] += tau_rate;
-    const Acting acting = acting_in(centre_);
-    Acting rate = acting_in(slope_);
+    slopes_ = quotients_.slopes();
+    slopes_[variable::tau - stored_count] += tau_rate;
+    const Acting acting = acting_in(quotients_.values());
+    Acting rate = acting_in(slopes_);
     rate.axle.tau += tau_rate;
     for (unsigned k = 0; k < computed; ++k)
-      if (asked_[k] && row_of(stored_count + k).by_force) slope_[k] = row_of(stored_count + k).by_force(acting, rate);
+      if (asked_[k] && row_of(stored_count + k).by_force) slopes_[k] = row_of(stored_count + k).by_force(acting, rate);
   }
 
   bool asked_[computed] = {}, asks_what_acts_ = false;
-  Numbers centre_ = {}, slope_ = {}, error_;
-  std::array<bool, count> exact_ = {};  // smaller steps are of no use, whatever else is asked for
+  Quotients<std::tuple_size_v<Numbers>> quotients_;
+  Numbers slopes_ = {};
 };
 
 // By a parameter in the initial state, or by a rate of the carrier, which jumps. The step is relative to the parameter
 // where it cannot be negative. For an angle, a place or a rate it is relative to the parameter or to 1, whichever is
 // larger.
-bool take_by_parameter(const Wheel& w, unsigned parameter, Quotients& quotients) {
+bool take_by_parameter(const Wheel& w, unsigned parameter, Slopes& slopes) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
                      parameter == variable::slope_direction;  // the same after a whole turn
   const double set = w.demand.value(parameter), x = turns ? wheel_less_turns(set) : set, size = std::fabs(x);
   const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
   Record moved = static_cast<const Record&>(w);
-  read_state(w, moved.run.y);
+  double y[max_states];
+  read_state(w, y);
+  moved.run.set_y(y);
   moved.run.pending = Pending::set;
   const auto at = [&](double moved_x) -> std::optional<Instant> {
     moved.demand.value(parameter) = moved_x;
     const bool exists = has_begun(moved.run.phase) || prepare(moved, Reporter());
-    return exists ? std::optional<Instant>(std::in_place, moved, moved.run.y) : std::nullopt;
+    return exists ? std::optional<Instant>(std::in_place, moved, moved.run.y()) : std::nullopt;
   };
-  return quotients.refine(x, scale, at);
+  return slopes.refine(x, scale, at);
 }
 
 // The ground as it is at this instant, by the sign of N.
@@ -174,9 +111,11 @@ void keep_ground(Instant& instant) {
 }
 
 // A brake that is not in use gets the law that it would have in use. In model exchange that law waits for an event.
-void put_brake_in_use(Instant& instant) {
+void put_brake_in_use(const InForce& in_force, Instant& instant) {
   if (instant.setup->model_exchange || instant.scene.friction.kind != WHEEL_FRICTIONLESS) return;
-  instant.scene.friction = braked_law(*instant.setup, instant.in_force.scene_at(instant.t), instant.y);
+  WheelScene scene = instant.scene;
+  scene.ground = in_force.ground();
+  instant.scene.friction = braked_law(*instant.setup, scene, instant.y);
 }
 
 // (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
@@ -192,10 +131,10 @@ double size_of(const Setup& setup, const WheelFriction& law, int state, double v
 
 // By an input or a state. The law and the sign of N are kept. Where a slide begins here, the loads decide the direction
 // of the slip.
-void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
+void take_at_instant(const Wheel& w, unsigned known, Slopes& slopes) {
   const Setup& setup = w.setup;
   Instant here = instant_of(w);
-  if (known == variable::M_brake) put_brake_in_use(here);
+  if (known == variable::M_brake) put_brake_in_use(w.run.in_force, here);
   keep_ground(here);
   if (setup.model_exchange)  // a small step must not vanish in the rounding of a large angle
     for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) here.x[angle] = wheel_less_turns(here.x[angle]);
@@ -205,7 +144,7 @@ void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
   };
   const double x = place_in(here);
   const double size = size_of(setup, here.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, x);
-  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.scene.contact : setup.scene.contact;
+  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.contact() : setup.first_contact;
   const bool begins = here.scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
   const auto at = [&](double moved_x) {
     Instant moved = here;
@@ -215,9 +154,9 @@ void take_at_instant(const Wheel& w, unsigned known, Quotients& quotients) {
     return moved;
   };
   if (begins)
-    quotients.refine(x, size, at);
+    slopes.refine(x, size, at);
   else
-    quotients.take(x, first_part * size, at);
+    slopes.take(x, first_part * size, at);
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -231,7 +170,7 @@ double pace_of(const double* y, const double* y_dot, bool slides) {
 
 // By time along the motion, with a step that is a small part of the time in which the wheel moves. Between the steps
 // kappa of a regularized law is kept. Its rate, which can be large, is added as the rate of a moment about the axle.
-void take_along_motion(const Wheel& w, Quotients& quotients) {
+void take_along_motion(const Wheel& w, Slopes& slopes) {
   const Setup& setup = w.setup;
   Instant start = instant_of(w);
   for (const int angle : {WHEEL_PSI, WHEEL_PHI})  // a small step must not vanish in the rounding of a large angle
@@ -239,7 +178,9 @@ void take_along_motion(const Wheel& w, Quotients& quotients) {
   keep_ground(start);
   const WheelFormulation& formulation = formulation_of(setup, start.scene.contact);
   const Rates rates = rates_of(setup, start.scene, start.y);
-  WheelLoad rate = start.in_force.inputs.load_rate_at(start.t);
+  Inputs inputs = w.run.in_force.inputs;
+  if (w.run.pending == Pending::set) inputs.take_over(w.run.t, w.demand.inputs);
+  WheelLoad rate = inputs.load_rate_at(w.run.t);
   WheelFriction& law = start.scene.friction;
   double tau_rate = 0;
   if (law.kind == WHEEL_REGULARIZED) {
@@ -257,24 +198,24 @@ void take_along_motion(const Wheel& w, Quotients& quotients) {
     return moved;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  quotients.take(0, pace > 0 ? first_part / pace : 1, at, tau_rate);
+  slopes.take(0, pace > 0 ? first_part / pace : 1, at, tau_rate);
 }
 
 }  // namespace
 
 void read_rates(const Wheel& w, Listed outputs, std::size_t count, double* out) {
-  Quotients quotients;
+  Slopes slopes;
   Reading reading(w);
   bool missing = false;
   for (std::size_t k = 0; k < count; ++k) {
     if (row_of(outputs[k]).read_rate) continue;
-    quotients.ask(outputs[k]);
+    slopes.ask(outputs[k]);
     missing = true;
   }
-  if (missing) take_along_motion(w, quotients);
+  if (missing) take_along_motion(w, slopes);
   for (std::size_t k = 0; k < count; ++k) {
     const Row& row = row_of(outputs[k]);
-    out[k] = row.read_rate ? row.read_rate(reading) : quotients.of(outputs[k]);
+    out[k] = row.read_rate ? row.read_rate(reading) : slopes.of(outputs[k]);
   }
 }
 
@@ -288,13 +229,13 @@ bool add_slopes(const Wheel& w, unsigned known, double seed, Listed unknowns, st
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   const bool guides = is_guide_rate(known);
   if (guides && !w.setup.steered()) return true;
-  Quotients quotients;
-  for (std::size_t k = 0; k < count; ++k) quotients.ask(unknowns[k]);
+  Slopes slopes;
+  for (std::size_t k = 0; k < count; ++k) slopes.ask(unknowns[k]);
   if (!parameter && !guides)
-    take_at_instant(w, known, quotients);
-  else if (!take_by_parameter(w, known, quotients))
+    take_at_instant(w, known, slopes);
+  else if (!take_by_parameter(w, known, slopes))
     return false;
-  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * quotients.of(unknowns[k]);
+  for (std::size_t k = 0; k < count; ++k) sums[k] += seed * slopes.of(unknowns[k]);
   return true;
 }
 

@@ -1,6 +1,7 @@
 // The state as bytes. They may come from anywhere: whatever they are, reading them is harmless.
 #include "snapshot.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -47,15 +48,21 @@ void visit(support::Archive& archive, Record& record) {
     archive.range(*x, 0, archive.greatest);
   archive.range(in_force.road.slope, 0, upright);
   archive.range(in_force.road.slope_direction, -largest_angle, largest_angle);
-  WheelFriction& law = in_force.scene.friction;
+  WheelFriction law = in_force.law();
+  WheelContactMode contact = in_force.contact();
   archive.count(law.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
   archive.range(law.sigma, -1, 1);
-  archive.count(in_force.scene.contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  archive.count(contact, WHEEL_GRIPS, WHEEL_SLIDES);
+  in_force.set_law(law);
+  in_force.set_contact(contact);
   archive.number(in_force.inputs.origin);
   for (auto& input : in_force.inputs.c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
-  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(run.y, max_states);
+  double y[max_states];
+  std::copy_n(run.latest_y(), max_states, y);
+  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(y, max_states);
+  run.set_y(y);
   for (int i = 0; i < event_count; ++i) {
     archive.count(in_force.below[i], 0, 1);
     archive.count(run.logged[i], 0, 1);
@@ -74,16 +81,18 @@ bool complete(Record& record) {
   if (!has_state(run.phase)) return true;
   if (!check_values(demand, run.can_slide, Checked::during_run, Reporter())) return false;
   setup = setup_of(demand, run.can_slide);
-  run.y_time = run.t;
-  if (setup.model_exchange) wheel_reduced_state(run.x, run.y);
+  if (setup.model_exchange) wheel_reduced_state(run.x, run.y());
   InForce& in_force = run.in_force;
   // Copies, because take_over writes over what it reads.
   in_force.take_over(setup, Road(in_force.road), in_force.inputs.origin, Inputs(in_force.inputs).c);
-  in_force.scene.friction.omega_s = in_force.law().kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  WheelFriction law = in_force.law();
+  law.omega_s = law.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  in_force.set_law(law);
   return setup.sliding || !in_force.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {
+  if (has_state(w.run.phase)) update_state(w);
   visit(archive, w);
   if (w.run.phase == Phase::stepping) w.solver.save_history(archive);
 }
@@ -97,7 +106,6 @@ std::size_t state_size(Wheel& w) {
 }
 
 void save_state(Wheel& w, unsigned char* bytes) {
-  if (has_state(w.run.phase)) update_state(w);
   support::Archive archive = support::Archive::writing(bytes + sizeof(Header));
   write(w, archive);
   const std::size_t size = archive.bytes();

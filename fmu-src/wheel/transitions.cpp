@@ -11,7 +11,7 @@ Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
   const EventRow& row = event_row(event);
   const InForce before = run.in_force;
-  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y, run.in_force);
+  const Consequence consequence = follow_event(row, wheel.setup, run.t, run.y(), run.in_force);
   if (is_observed(row, wheel.setup) && run.in_force.is_below(event)) log_observation(wheel, event, run.t);
   note_changes(wheel, before, event);
   return consequence;

@@ -16,7 +16,7 @@ namespace {
 // jams, and values that are sound one by one can have products that are not finite.
 bool check_start(const Record& r, Reading& start, const Reporter& reporter) {
   const InForce& in_force = r.run.in_force;
-  if (in_force.slides() && margin_of(event_row(Event::jams), r.setup, in_force, 0, r.run.y) < 0)
+  if (in_force.slides() && margin_of(event_row(Event::jams), r.setup, in_force, 0, r.run.y()) < 0)
     return reporter.check(false, "At the start the wheel %s: the run ends there.",
                           ending_of(in_force, Event::jams).text);
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
@@ -50,17 +50,25 @@ void freeze(Wheel& w, Phase phase) {
 
 void read_state(const Wheel& w, double* y) {
   const Run& run = w.run;
-  if (y != run.y) std::copy_n(run.y, max_states, y);
-  if (run.y_time == run.t) return;
+  std::copy_n(run.latest_y(), max_states, y);
+  if (!run.lags()) return;
   run.phase == Phase::unfolded ? w.orbit.read(run.t, y) : w.solver.read(run.t, y);
 }
 
+InForce in_force_now(const Record& r, double* y) {
+  InForce in_force = r.run.in_force;
+  if (r.run.pending == Pending::set) enforce(r.setup, r.demand, r.run.t, y, in_force);
+  return in_force;
+}
+
 Instant::Instant(const Record& r, const double* y_reached)
-    : setup(&r.setup), t(r.run.t), in_force(r.run.in_force), counters(r.run.counted), transitions(r.run.transitions) {
+    : setup(&r.setup),
+      scene(r.run.in_force.scene_at(r.run.t)),
+      counters(r.run.counted),
+      transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
-  if (r.run.pending == Pending::set) enforce(*setup, r.demand, t, y, in_force);
-  scene = in_force.scene_at(t);
+  if (r.run.pending == Pending::set) scene = in_force_now(r, y).scene_at(r.run.t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
@@ -95,7 +103,7 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
   const double taken = value / factorial[order];
-  if (asked == taken && run.pending != Pending::held_inputs) return;  // what is set to where it is held counts as set
+  if (asked == taken && run.pending != Pending::ended_slopes) return;  // a value that is set once more ends its slope
   asked = taken;
   run.pending = Pending::set;
   if (w.demand.kind == Kind::model_exchange && is_running(run.phase)) act_at_once(w);
@@ -110,12 +118,12 @@ bool prepare(Record& r, const Reporter& reporter) {
   run.can_slide = r.demand.parameters[variable::mu_slide] > 0;
   if (!check_values(r.demand, run.can_slide, Checked::at_start, reporter)) return false;
   r.setup = setup_of(r.demand, run.can_slide);
-  std::copy_n(r.setup.initial_state, max_states, run.y);
+  std::copy_n(r.setup.initial_state, max_states, run.y());
   run.in_force = InForce(r.setup);
-  if (r.setup.steered()) start_guide_rates(r.setup, r.demand, r.setup.scene, run.y);
-  enforce(r.setup, r.demand, 0, run.y, run.in_force);
-  if (r.setup.model_exchange) wheel_euler_states(run.y, r.demand.parameters[variable::psi_dot_start], run.x);
-  Reading start(Instant(r, run.y));
+  if (r.setup.steered()) start_guide_rates(r.setup, r.demand, run.y());
+  enforce(r.setup, r.demand, 0, run.y(), run.in_force);
+  if (r.setup.model_exchange) wheel_euler_states(run.y(), r.demand.parameters[variable::psi_dot_start], run.x);
+  Reading start(Instant(r, run.y()));
   if (check_start(r, start, reporter)) run.phase = Phase::initial;
   return run.phase == Phase::initial;
 }

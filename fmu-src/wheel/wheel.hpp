@@ -35,6 +35,10 @@ struct Record {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
+// (y: the state at the instant reached) => what is in force for what follows, with what was set since the last step. y
+// changes where a slip begins or ends, or the carrier jumps.
+InForce in_force_now(const Record& record, double* y);
+
 struct Wheel;
 
 // A wheel at one instant. Fixed axes.
@@ -44,9 +48,7 @@ struct Instant {
   Instant(const Record& record, const double* y);
 
   const Setup* setup;
-  double t;          // s, clock of the run
-  InForce in_force;  // for what follows the instant
-  WheelScene scene;  // of it at t, with the ground by the sign of N
+  WheelScene scene;  // for what follows the instant, with the ground by the sign of N
   double y[max_states];
   double x[WHEEL_EULER_STATES];  // model exchange: the states, from which y follows
   solver::Counters counters;
@@ -102,13 +104,15 @@ inline bool is_idle(const Record& record, unsigned variable) {
 // The state at the instant reached, from the solution.
 void read_state(const Wheel& wheel, double* y);
 inline void update_state(Wheel& wheel) {
-  read_state(wheel, wheel.run.y);
-  wheel.run.y_time = wheel.run.t;
+  if (!wheel.run.lags()) return;
+  double y[max_states];
+  read_state(wheel, y);
+  wheel.run.set_y(y);
 }
 
 Instant instant_of(const Wheel& wheel);
 
-// The wheel is as new: start values, and no state. The orbit is kept for the next run of the same shape.
+// The wheel is as new: start values, and no state. The orbit is kept for the next run with the same key.
 void reset(Wheel& wheel);
 // stop_time: infinite for none. tolerance <= 0: the default one.
 void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
