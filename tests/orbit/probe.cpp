@@ -110,7 +110,7 @@ PUBLIC long long probe_run(Probe* probe, unsigned reference, double value, doubl
       probe->solver.start(wheel::problem_of(wheel), solver::Method::runge_kutta, 0, wheel.setup.initial_state);
   if (!sound || wheel::advance(wheel, t) != wheel::Progress::done) return -1;
   wheel::update_state(wheel);
-  std::copy_n(wheel.run.y, 8, y);
+  std::copy_n(wheel.run.y(), 8, y);
   return probe->solver.counters().steps;
 }
 
