@@ -75,7 +75,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
   return guarded(c, legality::while_integrating, [=](Instance& i) {
     if (!check_count(i, x, n, wheel::state_count)) return fmi2Error;
     if (!are_finite(x, n)) return i.log(Topic::discard, "%s: a state is not finite.");
-    wheel::set_states(i.change(), x);
+    wheel::try_states(i.change(), x);
     return fmi2OK;
   });
 }

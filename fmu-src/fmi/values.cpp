@@ -65,7 +65,7 @@ bool check_value(Instance& i, unsigned variable, double value) {
     return refuse("%s: %s = %s: it must be %s %s; the value stays %s.", passed.relation, passed.value);
   if (value != 0 && is_idle(i.wheel, variable))
     return refuse("%s: %s = %s: this input needs guided = true and co-simulation; the value stays %s.");
-  if (variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.sliding)
+  if (variable == wheel::variable::mu_slide && value > 0 && !i.wheel.setup.can_slide())
     return refuse("%s: %s = %s: whether the wheel can slide is decided at the start; the value stays %s.");
   return true;
 }

@@ -39,8 +39,8 @@ struct Settling {
   double width = INFINITY;  // the rate bends within a few widths about zero
 };
 
-// `owner` is passed to each function. The solver may ask at any (t, y) in any order, and the answer depends on
-// nothing else.
+// `owner` is passed to each function. The solver may ask at any (t, y) in any order, and from a start or a resume to
+// the next event the answer depends on nothing else.
 struct Problem {
   int states;  // 8, or 10 for collocation alone: the length of loops, known at compile time
   void* owner;

@@ -11,43 +11,43 @@ namespace wheel {
 namespace {
 
 bool can_change_layer(const Setup& setup, const InForce& in_force) {
-  return setup.has_layer() && in_force.law().kind != WHEEL_FRICTIONLESS;
+  return setup.has_layer() && in_force.mode().kind != WHEEL_FRICTIONLESS;
 }
 
 // (y) => how far the spin is from the edge of the layer
 double way_to_layer(const Setup& setup, const InForce& in_force, double, const double* y) {
   const double omega_z = y[WHEEL_OMEGA_3], limit = layer_edge(setup);
-  const double inside = limit - std::fabs(omega_z), outside = in_force.law().sigma * omega_z - limit;
-  return (in_force.law().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
+  const double inside = limit - std::fabs(omega_z), outside = in_force.mode().sigma * omega_z - limit;
+  return (in_force.mode().kind == WHEEL_REGULARIZED ? inside : outside) / setup.rate_scale;
 }
 
-// In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a law.
+// In model exchange a spin that is set on a held wheel, and a brake where there is no friction, ask for a mode.
 bool can_change_spin(const Setup& setup, const InForce& in_force) {
-  const WheelFrictionKind law = in_force.law().kind;
-  if (law == WHEEL_FRICTIONLESS) return setup.model_exchange;
-  return law == WHEEL_HELD || (law == WHEEL_ROLLING && !setup.has_layer());
+  const WheelFrictionKind mode = in_force.mode().kind;
+  if (mode == WHEEL_FRICTIONLESS) return setup.model_exchange;
+  return mode == WHEEL_HELD || (mode == WHEEL_ROLLING && !setup.has_layer());
 }
 
 // (t, y) => how far the mode of friction is from its end: of a wheel that rolls, omega_z over the scale of rates; of
-// one that is held, the reserve of holding; without friction, zero until a brake is set, which asks for a law
+// one that is held, the reserve of holding; without friction, zero until a brake is set, which asks for a mode
 double spin_left(const Setup& setup, const InForce& in_force, double t, const double* y) {
-  const WheelFriction& law = in_force.law();
+  const WheelFriction& mode = in_force.mode();
   const double spin = y[WHEEL_OMEGA_3] / setup.rate_scale;
-  if (law.kind == WHEEL_ROLLING) return law.sigma * spin;
-  if (law.kind == WHEEL_HELD)
-    return std::fabs(spin) > spin_error ? -std::fabs(spin)
-                                        : hold_at(setup, in_force.scene_at(t), y).reserve / setup.moment_scale;
+  if (mode.kind == WHEEL_ROLLING) return mode.sigma * spin;
+  if (mode.kind == WHEEL_HELD)
+    return has_left_hold(setup, y) ? -std::fabs(spin)
+                                   : hold_at(setup, in_force.scene_at(t), y).reserve / setup.moment_scale;
   return -in_force.scene_at(t).load.brake / setup.moment_scale;
 }
 
 int spin_alone(const InForce& in_force) {
-  return in_force.law().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : all_states(in_force);
+  return in_force.mode().kind == WHEEL_ROLLING ? WHEEL_OMEGA_3 : all_states(in_force);
 }
 
 void change_spin(const Setup& setup, double t, double* y, InForce& in_force) {
-  const WheelFrictionKind law = in_force.law().kind;
-  if (law != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
-  law == WHEEL_HELD ? release(setup, t, y, in_force) : decide_law(setup, t, y, in_force);
+  const WheelFrictionKind mode = in_force.mode().kind;
+  if (mode != WHEEL_FRICTIONLESS) y[WHEEL_OMEGA_3] = 0;
+  mode == WHEEL_HELD ? release(setup, t, y, in_force) : decide_mode(setup, t, y, in_force);
 }
 
 bool is_sliding(const Setup&, const InForce& in_force) { return in_force.slides(); }
@@ -80,7 +80,7 @@ double jam_left(const Setup&, const double*, double N) { return N < solver::neve
 // (y) => rad from where the wheel counts as flat
 double lean_left(const Setup&, const double* y, double) { return angle_from_flat(y[WHEEL_THETA]) - flat_angle; }
 
-void change_layer(const Setup& setup, double t, double* y, InForce& in_force) { decide_law(setup, t, y, in_force); }
+void change_layer(const Setup& setup, double t, double* y, InForce& in_force) { decide_mode(setup, t, y, in_force); }
 
 }  // namespace
 
@@ -99,7 +99,7 @@ constexpr EventRow event_rows[] = {
      .can_occur = [](const Setup& setup,
                      const InForce& in_force) { return is_limited(setup, in_force.road) && !in_force.slides(); },
      .value = grip_left,
-     .ends = [](const Setup& setup) { return !setup.sliding; },
+     .ends = [](const Setup& setup) { return !setup.can_slide(); },
      .follow = begin_slide,
      .ending = "needs a friction coefficient above mu_max",
      .limit = [](const InForce& in_force) { return in_force.road.mu_max; }},
@@ -133,15 +133,20 @@ constexpr EventRow event_rows[] = {
 
 namespace {
 
+// A row that does not always end the run bends the motion, or has a text for what is observed.
 constexpr bool is_sound(const EventRow& row) {
   return row.event == static_cast<Event>(&row - event_rows + 1) && !row.value == !!row.quick_value && row.can_occur &&
-         !row.ends == !row.ending && (row.follow || row.ends || row.observation);
+         !row.ends == !row.ending && (row.follow || row.observation || row.ends == always_ends);
 }
 static_assert(std::size(event_rows) == row_count && row_count <= solver::max_watched);
 static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order of Event, one value, what follows");
 
 // Extreme loads on a tiny wheel would overflow, but a saved state holds margins as finite numbers.
 constexpr double largest_margin = 1e100;
+
+// The margin of an observed event is that of its next change: where the value lies below zero already, it falls to zero
+// as the value rises. So an event is never crossed twice for one change of side.
+void change_side(Event event, InForce& in_force) { in_force.set_below(event, !in_force.is_below(event)); }
 
 // (value) => margin: below zero where the event has occurred
 double signed_margin(const EventRow& row, const InForce& in_force, double value) {
@@ -152,8 +157,8 @@ double signed_margin(const EventRow& row, const InForce& in_force, double value)
 
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& in_force) {
   if (row.follow) row.follow(setup, t, y, in_force);
-  if (row.observation) in_force.cross(row.event);
-  const bool has_friction = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.slides();
+  if (row.observation) change_side(row.event, in_force);
+  const bool has_friction = in_force.mode().kind != WHEEL_FRICTIONLESS || in_force.slides();
   return row.follow || (row.bends_friction && has_friction) ? Consequence::bends : Consequence::goes_on;
 }
 
@@ -183,7 +188,7 @@ double least_margin(const Setup& setup, const InForce& in_force, const double* y
 void find_below(const Setup& setup, double t, const double* y, InForce& in_force) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, in_force) && margin_of(row, setup, in_force, t, y) < 0)
-      in_force.cross(row.event);
+      change_side(row.event, in_force);
 }
 
 }  // namespace wheel

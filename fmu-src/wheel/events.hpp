@@ -11,20 +11,27 @@ using solver::Consequence;
 
 CONSTANT(double, spin_error, 1e-3, "of the scale of rates", "beyond zero by less, a spin is an error of the solver");
 
+// (y of a held wheel) => whether its spin is more than an error of the solver: it has been set
+inline bool has_left_hold(const Setup& setup, const double* y) {
+  return std::fabs(y[WHEEL_OMEGA_3]) / setup.rate_scale > spin_error;
+}
+
 inline int all_states(const InForce&) { return -1; }
 
 // A row by itself is enough for the solver and for snapshots. These rows are named elsewhere too:
 //   spin_changes   in exchange.cpp: a spin that the caller has set is not this event
 //   lies_flat      in exchange.cpp: its margin alone is asked for beyond flat; in logbook.cpp: a hint
 //   lost_contact   in run.cpp and exchange.cpp: it decides the side of the ground; in logbook.cpp: a hint
-//   jams           in motion.cpp, wheel.cpp and logbook.cpp: a start or a road at which the wheel jams
+//   jams           in motion.cpp, wheel.cpp and logbook.cpp: a start, or what was set, at which the wheel jams
 struct EventRow {
   Event event;
-  // Whether it can occur, given what is in force.
+  // Whether it can occur, given what is in force. An event after which the motion goes on may not change it for any
+  // row: the solver keeps its list until it starts anew.
   bool (*can_occur)(const Setup& setup, const InForce& in_force);
-  // A row has one of two values. Each is smooth, scaled to about one, and falls below zero at the event. The quick one
-  // depends on the state and on the normal force N alone, which come with the rates: the solver looks at it only where
-  // it comes near zero. The value of an observed event changes its sign again and again.
+  // A row has one of two values, scaled to about one, which falls below zero at the event. It is smooth, but for that
+  // of a jam, of a slip far from its end and of a spin that was set, which jump away from zero. The quick one depends
+  // on the state and on the normal force N alone, which come with the rates: the solver looks at it only where it comes
+  // near zero. The value of an observed event changes its sign again and again.
   double (*value)(const Setup& setup, const InForce& in_force, double t, const double* y) = nullptr;
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
   // The only state that the value reads, below zero where it reads all.

@@ -54,11 +54,13 @@ double indicator(const EventRow& row, const Record& r) {
   return row.can_occur(r.setup, r.run.in_force) ? margin_at(row, r) + distance : 1;
 }
 
-// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred. Without
-// friction `spin_changes` always has, by its value of zero; then the law is decided, as it is without the event.
+// Whether an event has occurred at the instant reached, or lies so close ahead that it counts as occurred. Of an
+// observed event the side ahead alone counts: a second decision at the same instant changes nothing. Without friction
+// `spin_changes` always has occurred, by its value of zero; then the mode is decided, as it is without the event.
 bool has_occurred(const EventRow& row, const Record& r) {
   if (!row.in_model_exchange || !row.can_occur(r.setup, r.run.in_force)) return false;
-  return margin_at(row, r) <= 0 || margin_at(row, r, soon * r.setup.time_scale) <= 0;
+  const bool now = !is_observed(row, r.setup) && margin_at(row, r) <= 0;
+  return now || margin_at(row, r, soon * r.setup.time_scale) <= 0;
 }
 
 // Whether the motion can have led the spin across zero, or away from where it was held, within its longest step. If
@@ -66,7 +68,7 @@ bool has_occurred(const EventRow& row, const Record& r) {
 bool is_led(const Record& r) {
   const WheelScene scene = r.run.in_force.scene_at(r.run.t);
   const double spin = r.run.y()[WHEEL_OMEGA_3] / r.setup.rate_scale;
-  if (scene.friction.kind == WHEEL_HELD) return std::fabs(spin) <= spin_error;
+  if (scene.friction.kind == WHEEL_HELD) return !has_left_hold(r.setup, r.run.y());
   const double omega_z_dot = rates_of(r.setup, scene, r.run.y()).y_dot[WHEEL_OMEGA_3];
   const double rate = scene.friction.sigma * omega_z_dot / r.setup.rate_scale;
   return scene.friction.sigma * spin >= std::fmin(rate, 0) * r.setup.longest_step - spin_error;
@@ -81,18 +83,23 @@ Event ending_at(const Record& r) {
 }
 
 // Decides in y: of the state, an event changes omega_z alone.
+//   1  a held wheel loses what its spin has of the solver's error, so that the next steps see it at rest
+//   2  the run ends where it does so in the mode that held up to here
+//   3  what is observed changes its side: the ground may pull from here on
+//   4  the mode follows from the motion, or anew where the caller has set the spin
+//   5  the run ends where it does so in the mode that was decided
 bool decide_events(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
   double& omega_z = run.y()[WHEEL_OMEGA_3];
   const double spin = omega_z;
   const bool led = is_led(w);
-  if (before.law().kind == WHEEL_HELD && led) omega_z = 0;
   const auto end_if_due = [&] {
     const Event ending = ending_at(w);
     if (ending != Event::none) end_run(w, ending);
     return ending != Event::none;
   };
+  if (before.mode().kind == WHEEL_HELD && led) omega_z = 0;
   if (end_if_due()) return false;
   for (const EventRow& row : event_rows)
     if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
@@ -100,10 +107,10 @@ bool decide_events(Wheel& w) {
   if (const EventRow& spin_changes = event_row(Event::spin_changes); led && has_occurred(spin_changes, w))
     follow_event(spin_changes, w.setup, run.t, run.y(), run.in_force);
   else
-    decide_law(w.setup, run.t, run.y(), run.in_force);
+    decide_mode(w.setup, run.t, run.y(), run.in_force);
   note_changes(w, passed);
-  if (end_if_due()) return false;  // under the law that was decided
-  return omega_z != spin || differ(before.law(), run.in_force.law()) ||
+  if (end_if_due()) return false;
+  return omega_z != spin || differ(before.mode(), run.in_force.mode()) ||
          before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
 }
 
@@ -128,27 +135,27 @@ void act_at_once(Wheel& w) {
   in_force.take_over(w.setup, road_asked(w.demand), w.run.t, w.demand.inputs);
   w.run.pending = Pending::nothing;
   if (in_force.road == before.road || w.run.phase == Phase::event_mode) return;
-  decide_law(w.setup, w.run.t, w.run.y(), in_force);
+  decide_mode(w.setup, w.run.t, w.run.y(), in_force);
   note_changes(w, before);
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
-void enter(Wheel& w, Phase mode) {
-  if (w.run.phase != Phase::ended) w.run.phase = mode;
+void enter(Wheel& w, Phase phase) {
+  if (w.run.phase != Phase::ended) w.run.phase = phase;
 }
 
 void set_time(Wheel& w, double time) { w.run.set_time_alone(time - w.demand.start_time); }
 
-void set_states(Wheel& w, const double* x) {
+void try_states(Wheel& w, const double* x) {
   std::copy_n(x, state_count, w.run.x);
   wheel_reduced_state(w.run.x, w.run.y());
 }
 
-void set_state(Wheel& w, unsigned variable, double value) {
+void impose_state(Wheel& w, unsigned variable, double value) {
   for (int i = 0; i < state_count; ++i)
     if (states_of_x[i].variable == variable) w.run.x[i] = value;
   wheel_reduced_state(w.run.x, w.run.y());
-  decide_law(w.setup, w.run.t, w.run.y(), w.run.in_force);
+  decide_mode(w.setup, w.run.t, w.run.y(), w.run.in_force);
 }
 
 void read_states(const Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }

@@ -1,7 +1,7 @@
 // The laws of the contact: rolling resistance, the start and the end of a slide.
 //
-// decide_contact asks whether the wheel grips. If so, decide_law chooses the law of rolling resistance. If not,
-// begin_slide chooses the direction of the slip and the law, each of which depends on the other.
+// decide_contact asks whether the wheel grips. If so, decide_mode chooses the mode. If not, begin_slide
+// chooses the direction of the slip and the mode, each of which depends on the other.
 #include "law.hpp"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.
 // (moment that would hold the wheel) => rolling against it
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
-// (scene, braked: whether a brake is in use, y) => the law
-WheelFriction law_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
+// (scene, braked: whether a brake is in use, y) => the mode
+WheelFriction mode_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
   if (scene.wheel.s == 0 && !braked) return frictionless;
   const double omega_z = y[WHEEL_OMEGA_3];
   const bool regularized = setup.friction_law == regularized_law;
@@ -28,7 +28,7 @@ WheelFriction law_at(const Setup& setup, const WheelScene& scene, bool braked, c
   return hold.reserve >= 0 ? held : released_from(hold);
 }
 
-// Whether the laws of a wheel that starts to slide are tried one by one, held first. That is where it has no spin, and
+// Whether the modes of a wheel that starts to slide are tried one by one, held first. That is where it has no spin, and
 // rolling friction or a brake.
 bool may_be_held(const Setup& setup, const InForce& in_force, const double* y) {
   const bool some = in_force.road.s != 0 || in_force.inputs.braked;
@@ -41,7 +41,7 @@ WheelSlip free_slip(WheelScene scene, const double* y) {
   return wheel_slip(&scene, y, 0);
 }
 
-// Whether a law of a wheel without spin agrees with the motion that it gives.
+// Whether a mode of a wheel without spin agrees with the motion that it gives.
 bool agrees(const Setup& setup, const WheelScene& scene, const double* y) {
   if (scene.friction.kind == WHEEL_HELD) return hold_at(setup, scene, y).reserve >= 0;
   return scene.friction.sigma * dynamics_of(setup, scene, y).omega_z_dot >= 0;
@@ -70,7 +70,7 @@ void jump_to_guide_rates(const Setup& setup, const Demand& demand, const WheelSc
   if (rests(demand, y)) return;
   WheelMotion motion = motion_of(setup, scene.contact, y);
   WheelScene ramp = scene;
-  ramp.friction = law_at(setup, scene, scene.load.brake > 0, y);
+  ramp.friction = mode_at(setup, scene, scene.load.brake > 0, y);
   const bool may_rest = ramp.friction.kind == WHEEL_HELD || ramp.friction.kind == WHEEL_REGULARIZED;
   const double hold = may_rest ? hold_at(setup, scene, y).reserve : 0;
   if (setup.friction_law == regularized_law && ramp.friction.kind == WHEEL_ROLLING)
@@ -91,16 +91,16 @@ void start_guide_rates(const Setup& setup, const Demand& demand, double* y) {
 
 void enforce(const Setup& setup, const Demand& demand, double t, double* y, InForce& in_force) {
   in_force.take_over(setup, road_asked(demand), t, demand.inputs);
-  if (setup.steered()) jump_to_guide_rates(setup, demand, in_force.scene_at(t), y);
+  if (setup.steered) jump_to_guide_rates(setup, demand, in_force.scene_at(t), y);
   decide_contact(setup, t, y, in_force);
 }
 
 void decide_contact(const Setup& setup, double t, double* y, InForce& in_force) {
   const bool slips_on = in_force.slides() && y[WHEEL_SLIP] > least_slip(setup, t);
-  if (!setup.sliding || slips_on) return decide_law(setup, t, y, in_force);
+  if (!setup.can_slide() || slips_on) return decide_mode(setup, t, y, in_force);
   if (in_force.slides()) y[WHEEL_SLIP] = y[WHEEL_CHI] = 0;
   in_force.set_contact(WHEEL_GRIPS);
-  decide_law(setup, t, y, in_force);
+  decide_mode(setup, t, y, in_force);
   if (grip_left(setup, in_force, t, y) >= 0) return;
   // N depends on the horizontal force: a wheel that would lift off while it grips may press the road while it slides.
   // It lifts off where the road would have to pull in both cases.
@@ -109,34 +109,34 @@ void decide_contact(const Setup& setup, double t, double* y, InForce& in_force) 
   if (!lifts_off || setup.keep_contact) begin_slide(setup, t, y, in_force);
 }
 
-void decide_law(const Setup& setup, double t, const double* y, InForce& in_force) {
-  in_force.set_law(law_at(setup, in_force.scene_at(t), in_force.inputs.braked, y));
+void decide_mode(const Setup& setup, double t, const double* y, InForce& in_force) {
+  in_force.set_mode(mode_at(setup, in_force.scene_at(t), in_force.inputs.braked, y));
 }
 
-WheelFriction braked_law(const Setup& setup, const WheelScene& scene, const double* y) {
-  return law_at(setup, scene, true, y);
+WheelFriction braked_mode(const Setup& setup, const WheelScene& scene, const double* y) {
+  return mode_at(setup, scene, true, y);
 }
 
 void release(const Setup& setup, double t, const double* y, InForce& in_force) {
-  in_force.set_law(released_from(hold_at(setup, in_force.scene_at(t), y)));
+  in_force.set_mode(released_from(hold_at(setup, in_force.scene_at(t), y)));
 }
 
 void begin_slide(const Setup& setup, double t, double* y, InForce& in_force) {
   in_force.set_contact(WHEEL_SLIDES);
   WheelScene scene = in_force.scene_at(t);
-  const auto take = [&](const WheelFriction& law) {
-    in_force.set_law(law);
-    scene.friction = law;
+  const auto take = [&](const WheelFriction& mode) {
+    in_force.set_mode(mode);
+    scene.friction = mode;
     y[WHEEL_SLIP] = 2 * least_slip(setup, t);
     y[WHEEL_CHI] = first_direction(scene, y);
   };
   if (may_be_held(setup, in_force, y)) {
-    for (const WheelFriction& law : {held, rolling(true), rolling(false)}) {  // the last where none agrees
-      take(law);
+    for (const WheelFriction& mode : {held, rolling(true), rolling(false)}) {  // the last where none agrees
+      take(mode);
       if (agrees(setup, scene, y)) break;
     }
   } else {
-    take(law_at(setup, scene, in_force.inputs.braked, y));
+    take(mode_at(setup, scene, in_force.inputs.braked, y));
   }
 }
 

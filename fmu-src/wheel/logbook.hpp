@@ -13,8 +13,8 @@ void log_observation(Wheel& wheel, Event event, double t);
 // far as the solution is known, s, clock of the run. It looks a few times in the wheel's time scale, so that it costs
 // nothing noticeable.
 void look_at_grip(Wheel& wheel, double t);
-// Where a road that was set makes the wheel jam at this instant: no force satisfies the equations there, and the next
-// step ends the run.
+// Where road or inputs that were set make the wheel jam at this instant: no force satisfies the equations there, and
+// the next step ends the run.
 void warn_of_jam(const Wheel& wheel);
 
 // Of very many endings, as in a search that goes back and tries again, the first ones alone are logged.

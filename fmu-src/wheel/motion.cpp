@@ -1,5 +1,5 @@
-// A run moves on by one communication step. `advance_by_stages` lists the stages, and the functions before it are the
-// stages. Times are in s on the clock of the run.
+// A run moves on by one communication step. `advance_by_stages` lists the stages, which are marked in the functions
+// before it. Times are in s on the clock of the run.
 #include "motion.hpp"
 
 #include <algorithm>
@@ -100,7 +100,8 @@ Key key_of(const Record& record) {
 // solver has to step through it.
 bool enter_orbit(Wheel& w) {
   const InForce& in_force = w.run.in_force;
-  const bool acted_on = in_force.law().kind != WHEEL_FRICTIONLESS || in_force.inputs.loaded || in_force.road.slope != 0;
+  const bool acted_on =
+      in_force.mode().kind != WHEEL_FRICTIONLESS || in_force.inputs.loaded || in_force.road.slope != 0;
   // A carrier that turned at the start, and has stopped since, has turned the wheel away from its initial state.
   const bool turned =
       w.run.phase == Phase::at_start && !std::equal(w.run.y(), w.run.y() + max_states, w.setup.initial_state);
@@ -246,8 +247,7 @@ Progress advance_by_stages(Wheel& w, double t) {
 }  // namespace
 
 Excess excess_of(const Wheel& w, double h) {
-  const bool may_vary =
-      w.run.pending != Pending::nothing || w.run.phase == Phase::at_start || w.run.in_force.inputs.varies;
+  const bool may_vary = w.run.pending != Pending::nothing || w.run.in_force.inputs.varies;
   if (!may_vary || !varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];

@@ -22,7 +22,7 @@ double derivative(void* owner, double t, const double* y, double* y_dot) {
   WheelScene room;
   const WheelScene& scene = in_force.scene_at(t, room);
   const WheelFormulation& formulation =
-      states == WHEEL_REDUCED_STATES ? *setup.formulation : formulation_of(setup, scene.contact);
+      states == WHEEL_REDUCED_STATES ? *setup.rolling_equations : formulation_of(setup, scene.contact);
   const double N = formulation.derivative(&scene, y, y_dot);
   double sum = 0;
   for (int i = 0; i < states; ++i) sum += y_dot[i];
@@ -65,7 +65,7 @@ void weights(void* owner, double share, const double* y, double* weights) {
   double scales[max_states];
   scales_at(setup, spin, scales);
   for (int i = 0; i < states; ++i) weights[i] = 1 / (tolerance * scales[i] + rounding * std::fabs(y[i]));
-  if (in_force.law().kind != WHEEL_REGULARIZED) return;
+  if (in_force.mode().kind != WHEEL_REGULARIZED) return;
   const double in_law = width * std::sqrt(tolerance) * setup.omega_s + tolerance * std::fabs(spin);
   weights[WHEEL_OMEGA_3] = 1 / (std::fmin(tolerance * scales[WHEEL_OMEGA_3], in_law) + rounding * std::fabs(spin));
 }
@@ -125,7 +125,7 @@ solver::Problem problem_of(Record& record) {
   CONSTANT(double, first_step, 0.25, "of the edge", "an eighth of the layer: long enough to see the law");
   problem.near = near;
   problem.longest_step = setup.longest_step;
-  if (in_force.law().kind == WHEEL_REGULARIZED) {
+  if (in_force.mode().kind == WHEEL_REGULARIZED) {
     problem.steep = {WHEEL_OMEGA_3, solver::Settling::none, slopes_of_spin, setup.omega_s};
     const double rate = rates_of(setup, in_force.scene_at(record.run.t), record.run.y()).y_dot[WHEEL_OMEGA_3];
     problem.first_step = first_step * layer_edge(setup) / std::fabs(rate);
@@ -149,7 +149,7 @@ Consequence follow_on_orbit(void* owner, int event, double t, double* y) {
 
 solver::Method method_of(const Setup& setup, const InForce& in_force) {
   const bool cvode = setup.method == adams_method || setup.method == bdf_method;
-  if (in_force.slides() || (cvode && in_force.law().kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
+  if (in_force.slides() || (cvode && in_force.mode().kind == WHEEL_REGULARIZED)) return solver::Method::collocation;
   if (setup.method == bdf_method) return solver::Method::bdf;
   return setup.method == adams_method ? solver::Method::adams : solver::Method::runge_kutta;
 }

@@ -30,8 +30,8 @@ void InForce::take_over(const Setup& setup, const Road& asked, double t, const P
   inputs.set_load_at(t, scene_.load);
 }
 
-void InForce::cross(Event event) {
-  below[static_cast<int>(event)] = !is_below(event);
+void InForce::set_below(Event event, bool below_zero) {
+  below[static_cast<int>(event)] = below_zero;
   scene_.ground = ground_of(*this);
 }
 

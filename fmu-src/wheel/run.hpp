@@ -26,7 +26,7 @@ enum class Phase : int {
   at_start,         // initialization has ended, and no step has been made
   stepping,         // the solver steps through the motion
   unfolded,         // the motion is read from the orbit; nothing is integrated
-  event_mode,       // model exchange: the law of rolling resistance is decided
+  event_mode,       // model exchange: the mode of rolling is decided
   continuous_time,  // model exchange: the caller's solver moves the states
   ended,            // the model has ended, by an event
   closed,           // the caller has ended the run
@@ -40,7 +40,8 @@ constexpr bool is_running(Phase p) { return p >= Phase::at_start && p <= Phase::
 constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::without_start; }
 
 // What can happen at an instant that is not known beforehand. These are the names of the rows of the table in
-// events.cpp. Of two events at the same instant, the one that stands later here counts.
+// events.cpp. In co-simulation the later one in this list counts of two events at
+// the same instant; in model exchange all count.
 enum class Event : int {
   none,
   changes_layer,  // omega_z enters or leaves the layer of a regularized law
@@ -65,29 +66,28 @@ inline Road road_asked(const Demand& demand) {
   return {v[variable::s], v[variable::mu_max], v[variable::mu_slide], v[variable::slope], v[variable::slope_direction]};
 }
 
-// What acts on the wheel, and the scene that follows from it for the equations. These are plain numbers, and while a
-// run goes on, each has one writer.
+// What acts on the wheel, and the scene that follows from it for the equations: plain numbers.
 class InForce {
  public:
-  // Written by take_over: the road as it was asked for, and the inputs.
+  // While a run goes on, take_over alone writes the road, as it was asked for, and the inputs;
   Road road = {};
   Inputs inputs;
-  // Written by cross: whether the value of an observed event has fallen below zero and has not risen since.
+  // set_below alone writes whether the value of an observed event lies below zero.
   bool below[event_count] = {};
 
   InForce() = default;
-  // The state before anything is set: a level road, no inputs and no law.
+  // The state before anything is set: a level road, no inputs and no mode.
   explicit InForce(const Setup& setup);
   // Road and inputs are in force from t on. A mu_max that was set below mu_slide counts for both.
   void take_over(const Setup& setup, const Road& asked, double t, const Polynomials& polynomials);
-  // The value of an observed event changes its sign.
-  void cross(Event event);
-  // Decided in law.cpp: the law of rolling resistance and brake, and whether the wheel grips or slides.
-  void set_law(const WheelFriction& law) { scene_.friction = law; }
+  // The value of an observed event has fallen below zero, or has risen above it.
+  void set_below(Event event, bool below_zero);
+  // Decided in law.cpp: the mode of rolling, and whether the wheel grips or slides.
+  void set_mode(const WheelFriction& mode) { scene_.friction = mode; }
   void set_contact(WheelContactMode contact) { scene_.contact = contact; }
 
   bool is_below(Event event) const { return below[static_cast<int>(event)]; }
-  const WheelFriction& law() const { return scene_.friction; }
+  const WheelFriction& mode() const { return scene_.friction; }
   WheelContactMode contact() const { return scene_.contact; }
   bool slides() const { return scene_.contact == WHEEL_SLIDES; }
   WheelGround ground() const { return scene_.ground; }
@@ -125,8 +125,11 @@ class Run {
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   double x[WHEEL_EULER_STATES] = {};  // model exchange: the caller's states, from which y follows
   bool logged[event_count] = {};      // of each event that is observed: it has occurred, and was logged
-  long long transitions = 0;          // between kinds of friction, and between rolling and sliding
+  long long transitions = 0;          // between held and rolling to either side, and between rolling and sliding
   solver::Counters counted = {};      // all but those of the solver at work
+
+  // Whether a reading shows what was set since the last step.
+  bool shows_demand() const { return pending == Pending::set; }
 
   // The state at t. A communication step along a motion that is known already moves t alone, and the state lags behind.
   // Every longer way begins with update_state (wheel.hpp), which brings it to t: a step that asks more of the solution,

@@ -71,8 +71,8 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
 // Chooses the equations of rolling and of sliding by the formulation.
 void choose_equations(Setup& setup, const Demand& demand, bool can_slide) {
   const bool multibody = choice_of(demand.parameters[variable::formulation]) == multibody_formulation;
-  setup.formulation = multibody ? &wheel_multibody : &wheel_reduced;
-  if (can_slide) setup.sliding = multibody ? &wheel_multibody_sliding : &wheel_sliding;
+  setup.rolling_equations = multibody ? &wheel_multibody : &wheel_reduced;
+  if (can_slide) setup.sliding_equations = multibody ? &wheel_multibody_sliding : &wheel_sliding;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ bool check_values(const Demand& demand, bool can_slide, Checked when, const Repo
   require(can_slide || !(std::fabs(v[slip_x_start]) + std::fabs(v[slip_y_start]) > 0),
           "slip_x_start, slip_y_start = %s, %s m/s: an initial slip needs mu_slide.", slip_x_start, slip_y_start);
   require(!can_slide || !exchange, "mu_slide = %s: model exchange has no states for a slip and needs 0.", mu_slide);
-  sound &= reporter.check(!is_guiding(demand.inputs) || (v[guided] != 0 && !exchange),
+  sound &= reporter.check(!is_guiding(demand.inputs) || demand.is_steered(),
                           "psi_dot_guide, theta_dot_guide = %s, %s rad/s: these inputs need guided = true "
                           "and co-simulation; otherwise they and their derivatives must be 0.",
                           Digits{demand.value(psi_dot_guide), 9}, Digits{demand.value(theta_dot_guide), 9});
@@ -134,6 +134,7 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   Setup setup = {};
   setup.model_exchange = demand.kind == Kind::model_exchange;
   setup.guided = v[guided] != 0;
+  setup.steered = demand.is_steered();
   choose_equations(setup, demand, can_slide);
   // clang-format off
   setup.wheel = {.m = v[m], .r_0 = v[r_0], .r = v[r], .J_x = v[J_x], .J_y = v[J_y], .J_z = v[J_z], .g_n = v[g],
@@ -154,7 +155,7 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   const WheelMotion motion = {setup.psi.state,  v[theta_start],  setup.phi.state, v[psi_dot_start], v[theta_dot_start],
                               v[phi_dot_start], setup.X_O.state, setup.Y_O.state, v[slip_x_start],  v[slip_y_start]};
   WheelKinematics start;
-  if (setup.sliding && (motion.slip_x != 0 || motion.slip_y != 0)) setup.first_contact = WHEEL_SLIDES;
+  if (setup.can_slide() && (motion.slip_x != 0 || motion.slip_y != 0)) setup.first_contact = WHEEL_SLIDES;
   const WheelFormulation& formulation = formulation_of(setup, setup.first_contact);
   start_state(formulation, setup.wheel, motion, setup.initial_state);
   formulation.kinematics(&setup.wheel, setup.initial_state, &start);

@@ -24,8 +24,8 @@ static_assert(max_states == WHEEL_SLIDING_STATES);
 // Who integrates the motion.
 enum class Kind : int { co_simulation, model_exchange };
 
-// Parameters and tolerance make the setup. Inputs, their derivatives and the road may be set
-// again later, and are in force from the next step on. Inputs have two writers: the caller, and `end_slopes`.
+// Parameters and tolerance make the setup. Inputs, their derivatives and the road may be set again later. They are in
+// force from the next step on, in model exchange at once. Inputs have two writers: the caller, and `end_slopes`.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
@@ -39,6 +39,9 @@ struct Demand {
   // The value of a stored variable, or for k > 0 a coefficient of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
   double value(unsigned v, int k = 0) const { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }
+
+  // A guided wheel in co-simulation, whose carrier turns at the rates that are inputs.
+  bool is_steered() const { return parameters[variable::guided] != 0 && kind == Kind::co_simulation; }
 
   explicit Demand(Kind asked = Kind::co_simulation) : kind(asked) {
     for (unsigned v = 0; v < first_input; ++v) parameters[v] = row_of(v).start;
@@ -54,12 +57,13 @@ struct Origin {
 };
 
 struct Setup {
-  bool model_exchange;                  // another solver moves the states
-  const WheelFormulation* formulation;  // while the wheel rolls
-  const WheelFormulation* sliding;      // while it slides; null: it never does
-  WheelParameters wheel;                // on a level road, and s = 0: the road is part of the run
-  WheelContactMode first_contact;       // at the start
-  bool guided;
+  bool model_exchange;  // another solver moves the states
+  const WheelFormulation* rolling_equations;
+  const WheelFormulation* sliding_equations;  // null: the wheel never slides
+  WheelParameters wheel;                      // on a level road, and s = 0: the road is part of the run
+  WheelContactMode first_contact;             // at the start
+  bool guided;                                // the carrier keeps heading and tilt
+  bool steered;                               // it also turns, at the rates that are inputs
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
@@ -81,8 +85,8 @@ struct Setup {
   // take the law as it is. Outside, it equals the exact law to the last digit, and is replaced by it. In model exchange
   // the other solver gets the whole law.
   bool has_layer() const { return friction_law == regularized_law && !model_exchange; }
-  bool steered() const { return guided && !model_exchange; }  // the carrier turns at the rates that are inputs
-  bool is_multibody() const { return formulation == &wheel_multibody; }
+  bool is_multibody() const { return rolling_equations == &wheel_multibody; }
+  bool can_slide() const { return sliding_equations != nullptr; }
 };
 
 // (parameters, tolerance, kind; whether the wheel can slide) => setup
@@ -94,7 +98,7 @@ void start_state(const WheelFormulation& formulation, const WheelParameters& whe
 
 // The equations of the contact's mode.
 inline const WheelFormulation& formulation_of(const Setup& setup, WheelContactMode contact) {
-  return contact == WHEEL_SLIDES && setup.sliding ? *setup.sliding : *setup.formulation;
+  return contact == WHEEL_SLIDES && setup.sliding_equations ? *setup.sliding_equations : *setup.rolling_equations;
 }
 
 struct Rates {

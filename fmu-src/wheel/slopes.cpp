@@ -110,27 +110,27 @@ void keep_ground(Instant& instant) {
   instant.scene.ground = N > 0 ? WHEEL_GROUND_PRESSES : WHEEL_GROUND_PULLS;
 }
 
-// A brake that is not in use gets the law that it would have in use. In model exchange that law waits for an event.
+// A brake that is not in use gets the mode that it would have in use. In model exchange that mode waits for an event.
 void put_brake_in_use(const InForce& in_force, Instant& instant) {
   if (instant.setup->model_exchange || instant.scene.friction.kind != WHEEL_FRICTIONLESS) return;
   WheelScene scene = instant.scene;
   scene.ground = in_force.ground();
-  instant.scene.friction = braked_law(*instant.setup, scene, instant.y);
+  instant.scene.friction = braked_mode(*instant.setup, scene, instant.y);
 }
 
 // (state of y, or below zero a load, and its value) => the size in which it acts: of a load the whole weight or the
 // load.
-double size_of(const Setup& setup, const WheelFriction& law, int state, double value) {
+double size_of(const Setup& setup, const WheelFriction& mode, int state, double value) {
   if (state < 0) return std::fmax(setup.weight, std::fabs(value));
   double scales[max_states];
   scales_at(setup, 0, scales);
   const bool is_tilt = state == WHEEL_THETA, is_spin = state == WHEEL_OMEGA_3;
-  if (is_spin && law.kind == WHEEL_REGULARIZED) return std::fmin(scales[state], setup.omega_s);
+  if (is_spin && mode.kind == WHEEL_REGULARIZED) return std::fmin(scales[state], setup.omega_s);
   return is_tilt ? scales[state] * std::sin(value) : scales[state];
 }
 
-// By an input or a state. The law and the sign of N are kept. Where a slide begins here, the loads decide the direction
-// of the slip.
+// By an input or a state. The mode and the sign of N are kept. Where a slide begins here, the loads decide the
+// direction of the slip.
 void take_at_instant(const Wheel& w, unsigned known, Slopes& slopes) {
   const Setup& setup = w.setup;
   Instant here = instant_of(w);
@@ -179,17 +179,17 @@ void take_along_motion(const Wheel& w, Slopes& slopes) {
   const WheelFormulation& formulation = formulation_of(setup, start.scene.contact);
   const Rates rates = rates_of(setup, start.scene, start.y);
   Inputs inputs = w.run.in_force.inputs;
-  if (w.run.pending == Pending::set) inputs.take_over(w.run.t, w.demand.inputs);
+  if (w.run.shows_demand()) inputs.take_over(w.run.t, w.demand.inputs);
   WheelLoad rate = inputs.load_rate_at(w.run.t);
-  WheelFriction& law = start.scene.friction;
+  WheelFriction& mode = start.scene.friction;
   double tau_rate = 0;
-  if (law.kind == WHEEL_REGULARIZED) {
+  if (mode.kind == WHEEL_REGULARIZED) {
     const double s = start.scene.ground == WHEEL_GROUND_PULLS ? 0 : start.scene.wheel.s;
-    const double omega_z = start.y[WHEEL_OMEGA_3], steepness = std::cosh(omega_z / law.omega_s);
-    const double kappa_dot = rates.y_dot[WHEEL_OMEGA_3] / law.omega_s / steepness / steepness;
+    const double omega_z = start.y[WHEEL_OMEGA_3], steepness = std::cosh(omega_z / mode.omega_s);
+    const double kappa_dot = rates.y_dot[WHEEL_OMEGA_3] / mode.omega_s / steepness / steepness;
     tau_rate = -kappa_dot * (s * rates.N + start.scene.load.brake);
     rate.M[2] += tau_rate;
-    law = {WHEEL_ROLLING, wheel_kappa(&law, omega_z), 0};
+    mode = {WHEEL_ROLLING, wheel_kappa(&mode, omega_z), 0};
   }
   const auto at = [&](double t) {
     Instant moved = start;
@@ -224,11 +224,11 @@ bool add_slopes(const Wheel& w, unsigned known, double seed, Listed unknowns, st
   if (parameter && row_of(known).type != Type::real) return true;
   const bool of_slip =
       known == variable::slip_x_start || known == variable::slip_y_start || known == variable::mu_slide;
-  if (of_slip && !w.setup.sliding) return true;  // a wheel that never slides has no slip
+  if (of_slip && !w.setup.can_slide()) return true;  // a wheel that never slides has no slip
   const bool of_carrier = known == variable::psi_dot_start || known == variable::theta_dot_start;
   if (of_carrier && w.demand.value(variable::guided) != 0) return true;  // it stays
   const bool guides = is_guide_rate(known);
-  if (guides && !w.setup.steered()) return true;
+  if (guides && !w.setup.steered) return true;
   Slopes slopes;
   for (std::size_t k = 0; k < count; ++k) slopes.ask(unknowns[k]);
   if (!parameter && !guides)

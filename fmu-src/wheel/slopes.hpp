@@ -6,7 +6,7 @@
 
 namespace wheel {
 
-// (outputs) => their d/dt at the present instant, for co-simulation. The law and the sign of N last, and inputs follow
+// (outputs) => their d/dt at the present instant, for co-simulation. The mode and the sign of N last, and inputs follow
 // their polynomials; after a step, these are the polynomials of the step.
 void read_rates(const Wheel& wheel, Listed outputs, std::size_t count, double* out);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* forged = "a number is out of its bounds";
 
-// Of this FMU and version, by its GUID, which follows from the description, and of a kind of instance.
+// Of this FMU and version, by its GUID, which follows from the description and its version, and of a kind of instance.
 std::uint64_t mark_of(Kind kind) {
   constexpr std::string_view guid = WHEEL_GUID;
   return support::checksum_of(reinterpret_cast<const unsigned char*>(guid.data()), guid.size()) +
@@ -27,7 +27,9 @@ struct Header {
 };
 
 // All that the caller has set, and all of the run that does not follow from it: a new member of Demand, Run or InForce
-// belongs here too, or `complete` computes it. The bounds keep forged numbers harmless, not meaningful.
+// belongs here too, or `complete` computes it; these sizes remind of it. The bounds keep forged numbers harmless, not
+// meaningful.
+static_assert(alignof(Run) != 8 || (sizeof(Demand) == 544 && sizeof(Run) == 800 && sizeof(InForce) == 552));
 void visit(support::Archive& archive, Record& record) {
   Demand& demand = record.demand;
   Run& run = record.run;
@@ -48,12 +50,12 @@ void visit(support::Archive& archive, Record& record) {
     archive.range(*x, 0, archive.greatest);
   archive.range(in_force.road.slope, 0, upright);
   archive.range(in_force.road.slope_direction, -largest_angle, largest_angle);
-  WheelFriction law = in_force.law();
+  WheelFriction mode = in_force.mode();
   WheelContactMode contact = in_force.contact();
-  archive.count(law.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
-  archive.range(law.sigma, -1, 1);
+  archive.count(mode.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
+  archive.range(mode.sigma, -1, 1);
   archive.count(contact, WHEEL_GRIPS, WHEEL_SLIDES);
-  in_force.set_law(law);
+  in_force.set_mode(mode);
   in_force.set_contact(contact);
   archive.number(in_force.inputs.origin);
   for (auto& input : in_force.inputs.c) archive.numbers(input, max_order + 1);
@@ -85,10 +87,10 @@ bool complete(Record& record) {
   InForce& in_force = run.in_force;
   // Copies, because take_over writes over what it reads.
   in_force.take_over(setup, Road(in_force.road), in_force.inputs.origin, Inputs(in_force.inputs).c);
-  WheelFriction law = in_force.law();
-  law.omega_s = law.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
-  in_force.set_law(law);
-  return setup.sliding || !in_force.slides();
+  WheelFriction mode = in_force.mode();
+  mode.omega_s = mode.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;
+  in_force.set_mode(mode);
+  return setup.can_slide() || !in_force.slides();
 }
 
 void write(Wheel& w, support::Archive& archive) {

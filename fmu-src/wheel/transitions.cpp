@@ -20,15 +20,16 @@ Consequence pass_event(Wheel& wheel, Event event) {
 void note_changes(Wheel& wheel, const InForce& before, Event by) {
   Run& run = wheel.run;
   const double t = shown_time(wheel, run.t);
-  const WheelFriction &old = before.law(), &law = run.in_force.law();
+  const WheelFriction &old = before.mode(), &now = run.in_force.mode();
+  // To or from a regularized mode, or none, is no transition.
   const auto is_exact = [](const WheelFriction& f) { return f.kind == WHEEL_ROLLING || f.kind == WHEEL_HELD; };
-  if (is_exact(old) && is_exact(law) && differ(old, law)) {  // a change to another law is not a transition
+  if (is_exact(old) && is_exact(now) && differ(old, now)) {
     ++run.transitions;
-    if (law.kind == WHEEL_HELD)
+    if (now.kind == WHEEL_HELD)
       wheel.reporter.log(Topic::event, "t = %s s: stick, omega_z is held at zero.", t);
     else
       wheel.reporter.log(Topic::event, "t = %s s: %s, omega_z becomes %s.", t,
-                         old.kind == WHEEL_HELD ? "release" : "reversal", law.sigma > 0 ? "positive" : "negative");
+                         old.kind == WHEEL_HELD ? "release" : "reversal", now.sigma > 0 ? "positive" : "negative");
   }
   const bool slid = before.slides(), slides = run.in_force.slides();
   const bool anew = slides && by != Event::none && event_row(by).slides_anew;

@@ -1,4 +1,4 @@
-// Transitions of a run: events that do not end it, and changes of friction and contact, counted and logged.
+// Transitions of a run: events that do not end it, and changes of mode and contact, counted and logged.
 #pragma once
 
 #include "wheel.hpp"

@@ -1,5 +1,6 @@
-// How each calculated variable is read, its rate of change and its limits: what modelDescription.xml cannot say. A
-// variable of the description without a reader here does not compile, nor does a reader without its variable.
+// What modelDescription.xml cannot say: how each calculated variable is read, its rate of change, and limits of stored
+// ones that are strict, or that the digits of a number set. A variable of the description without a reader here does
+// not compile, nor does a reader without its variable.
 #include "variables.hpp"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // The FMU's variables as one table, in the order of the description. Names, types, roles, start values and limits
-// come from modelDescription.xml at build time (variables.inc, by tools/wheelfmu/fmu/variable_rows.py); how a
-// calculated variable is read stands in variables.cpp. Units and frames: docs/variables.md.
+// come from modelDescription.xml at build time (variables.inc, by tools/wheelfmu/fmu/variable_rows.py). How a
+// calculated variable is read, and further limits, stand in variables.cpp; rules about several parameters in setup.cpp.
+// Units and frames: docs/variables.md.
 #pragma once
 
 #include <limits>

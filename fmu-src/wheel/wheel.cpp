@@ -57,7 +57,7 @@ void read_state(const Wheel& w, double* y) {
 
 InForce in_force_now(const Record& r, double* y) {
   InForce in_force = r.run.in_force;
-  if (r.run.pending == Pending::set) enforce(r.setup, r.demand, r.run.t, y, in_force);
+  if (r.run.shows_demand()) enforce(r.setup, r.demand, r.run.t, y, in_force);
   return in_force;
 }
 
@@ -68,7 +68,7 @@ Instant::Instant(const Record& r, const double* y_reached)
       transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
-  if (r.run.pending == Pending::set) scene = in_force_now(r, y).scene_at(r.run.t);
+  if (r.run.shows_demand()) scene = in_force_now(r, y).scene_at(r.run.t);  // without it, in_force_now only copies
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 
@@ -98,7 +98,7 @@ void set_experiment(Wheel& w, double start_time, double stop_time, double tolera
 }
 
 void set(Wheel& w, unsigned variable, double value, int order) {
-  if (variable >= stored_count) return set_state(w, variable, value);
+  if (variable >= stored_count) return impose_state(w, variable, value);
   Run& run = w.run;
   if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
@@ -120,7 +120,7 @@ bool prepare(Record& r, const Reporter& reporter) {
   r.setup = setup_of(r.demand, run.can_slide);
   std::copy_n(r.setup.initial_state, max_states, run.y());
   run.in_force = InForce(r.setup);
-  if (r.setup.steered()) start_guide_rates(r.setup, r.demand, run.y());
+  if (r.setup.steered) start_guide_rates(r.setup, r.demand, run.y());
   enforce(r.setup, r.demand, 0, run.y(), run.in_force);
   if (r.setup.model_exchange) wheel_euler_states(run.y(), r.demand.parameters[variable::psi_dot_start], run.x);
   Reading start(Instant(r, run.y()));

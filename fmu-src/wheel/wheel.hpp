@@ -4,16 +4,26 @@
 //
 // Of a wheel that is passed as const, a function changes only what is kept to save work: the polynomial of a step, the
 // piece of a track and the half of an orbit that were read last. So no two threads may read one wheel. A function that
-// takes a Record changes that, but never the solution.
+// takes a Record that is not const changes that, but never the solution.
 //
 // The other headers of this folder, each below those that it includes:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
 //   setup, run                    what follows from the parameters; what is in force, and how far the run has come
-//   law, events                   how friction and contact are decided; the table of what can happen
-//   logbook, transitions          messages; events that a run passes, and changes of friction and contact
+//   law, events                   how the mode of rolling and the contact are decided; the table of what can happen
+//   logbook, transitions          messages; events that a run passes, and changes of mode and contact
 //   posed_problem                 what the solver asks
 //   motion, exchange              one communication step; model exchange
-//   slopes, snapshot              derivatives of the variables; the state as bytes
+//   slopes, quotients, snapshot   derivatives of the variables, by difference quotients; the state as bytes
+//
+// Words for the way from what is asked for to what is in force:
+//   set           the caller's value stands in the demand; a reading shows it (Pending)
+//   enforce       the demand is in force from an instant on: take_over, and the contact and the mode that follow
+//     apply_demand    at the next step of co-simulation
+//     act_at_once     in model exchange
+//     in_force_now    for a reading, on a copy
+//   follow_event  what follows from an event is in force
+//     pass_event      for the run, counted and logged
+//     follow_on_orbit ahead of the run
 #pragma once
 
 #include <optional>
@@ -23,7 +33,7 @@
 
 namespace wheel {
 
-// All of a wheel but its solution: numbers that are copied and restored by assignment.
+// All that a saved state restores of a wheel but its solution: numbers that are copied and restored by assignment.
 struct Record {
   explicit Record(Kind kind) : demand(kind) {}
 
@@ -51,7 +61,7 @@ struct Instant {
   WheelScene scene;  // for what follows the instant, with the ground by the sign of N
   double y[max_states];
   double x[WHEEL_EULER_STATES];  // model exchange: the states, from which y follows
-  solver::Counters counters;
+  solver::Counters counters;     // without those of the solver at work, which instant_of adds
   long long transitions;
 };
 
@@ -98,7 +108,7 @@ struct Wheel : Record {
 inline bool is_guide_rate(unsigned variable) { return variable >= variable::psi_dot_guide && variable < stored_count; }
 // Whether it is such a rate, and no carrier turns the running wheel.
 inline bool is_idle(const Record& record, unsigned variable) {
-  return is_guide_rate(variable) && is_running(record.run.phase) && !record.setup.steered();
+  return is_guide_rate(variable) && is_running(record.run.phase) && !record.setup.steered;
 }
 
 // The state at the instant reached, from the solution.

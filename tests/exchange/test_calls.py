@@ -386,6 +386,21 @@ def jacobian_error(wheel: FMU2Wheel, knowns: tuple[str, ...], h: float, share: f
     return float((difference / (1e-9 + np.abs(want).max(axis=0))).max())
 
 
+def test_a_second_decision_at_the_instant_at_which_the_ground_begins_to_pull_changes_nothing(library: Library) -> None:
+    """N is still above zero, and falls to it so soon that the event counts as occurred."""
+    with at_odd(library, s=0.02, keep_contact=True) as wheel:
+        press(wheel, 1e-4)
+        assert wheel.enterEventMode() == OK
+        (F_Z, N), slope = wheel.get("F_Z", "lambda_3"), wheel.jacobian(["lambda_3"], ["F_Z"])[0, 0]
+        wheel.put(F_Z=F_Z + (2e-9 * WEIGHT - N) / slope)
+        assert wheel.indicator("lost_contact") > 0
+        wheel.decide()
+        decided = wheel.serialized()
+        wheel.decide()
+        assert wheel.serialized() == decided
+        assert wheel.indicator("lost_contact") < 0 < wheel.get("lambda_3")[0]  # the partner: it has been decided
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_directional_derivatives_next_to_lift_off_are_those_of_the_wheels_side(library: Library, seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -131,7 +131,7 @@ def sines(t: float, order: int = 0) -> tuple[float, ...]:
     return tuple(a * w**order * sin(w * t + p + order * pi / 2) for a, w, p in SINES.values())
 
 
-# Start values of one scene of every kind: every formulation, every method, every law of rolling resistance, and a slide.
+# Start values of one scene of every kind: every formulation, method and law of rolling resistance, and a slide.
 KINDS: dict[str, Values] = {
     name: SCENES[name].start
     for name in ("free", "friction", "general inertia", "general inertia, friction", "regularized", "stiff law")
