@@ -120,27 +120,27 @@ INLINED Accelerations move_guided(const WheelScene* scene, const Frame* f, const
 }
 
 /* One state under the scene's loads and laws. */
-typedef struct Instant {
+typedef struct Evaluation {
   Frame frame;
   Drift drift;
   Accelerations accelerations;
-} Instant;
+} Evaluation;
 
 /* (scene, y) => geometry, drift, accelerations; inlined as the frame is */
-INLINED Instant instant_of(const WheelScene* scene, const double* y, int guided) {
+INLINED Evaluation evaluate(const WheelScene* scene, const double* y, int guided) {
   const WheelParameters* w = &scene->wheel;
   double kappa = kappa_of(&scene->friction, y[WHEEL_OMEGA_3]); /* first: a call of tanh leaves nothing in registers */
   AxleLaw law = axle_law_of(scene, kappa, scene->ground == WHEEL_GROUND_PULLS);
   Inertia inertia = inertia_of(w, y[WHEEL_PHI]);
   Frame frame = frame_of(w, y);
   Drift drift = drift_of(scene, &inertia, &frame);
-  if (guided) return (Instant){frame, drift, move_guided(scene, &frame, &drift, law)};
+  if (guided) return (Evaluation){frame, drift, move_guided(scene, &frame, &drift, law)};
   System system = system_of(w, &inertia, &frame, &drift);
-  return (Instant){frame, drift, move(&system, scene->ground, law)};
+  return (Evaluation){frame, drift, move(&system, scene->ground, law)};
 }
 
 /* (instant) => lambda_1, lambda_2, of R = m a - F turned into fixed axes */
-static inline void reaction_of(const WheelParameters* w, const Instant* now, double lambda[3]) {
+static inline void reaction_of(const WheelParameters* w, const Evaluation* now, double lambda[3]) {
   const Frame* f = &now->frame;
   const Accelerations* a = &now->accelerations;
   double R_1 = now->drift.k_1 + w->m * (f->eta * a->omega_2_dot - f->rho * a->omega_3_dot);
@@ -169,7 +169,7 @@ static void start(const WheelParameters* wheel, const WheelMotion* motion, doubl
 
 /* (scene, y) => y_dot; returns N */
 INLINED double rates(const WheelScene* scene, const double* y, double* y_dot, int guided) {
-  Instant now = instant_of(scene, y, guided);
+  Evaluation now = evaluate(scene, y, guided);
   double X_dot, Y_dot;
   set_velocity(&scene->wheel, &now.frame, &X_dot, &Y_dot);
   set_rates(&now.frame, &now.accelerations, y_dot);
@@ -203,7 +203,7 @@ static void kinematics(const WheelParameters* wheel, const double* y, WheelKinem
 }
 
 static void dynamics(const WheelScene* scene, const double* y, WheelDynamics* out) {
-  Instant now = instant_of(scene, y, scene->guided);
+  Evaluation now = evaluate(scene, y, scene->guided);
   reaction_of(&scene->wheel, &now, out->lambda);
   set_dynamics(scene, &now.frame, &now.accelerations, out);
 }

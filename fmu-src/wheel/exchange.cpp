@@ -82,38 +82,6 @@ Event ending_at(const Record& r) {
   return ending;
 }
 
-// Decides in y: of the state, an event changes omega_z alone.
-//   1  a held wheel loses what its spin has of the solver's error, so that the next steps see it at rest
-//   2  the run ends where it does so in the mode that held up to here
-//   3  what is observed changes its side: the ground may pull from here on
-//   4  the mode follows from the motion, or anew where the caller has set the spin
-//   5  the run ends where it does so in the mode that was decided
-bool decide_events(Wheel& w) {
-  Run& run = w.run;
-  const InForce before = run.in_force;
-  double& omega_z = run.y()[WHEEL_OMEGA_3];
-  const double spin = omega_z;
-  const bool led = is_led(w);
-  const auto end_if_due = [&] {
-    const Event ending = ending_at(w);
-    if (ending != Event::none) end_run(w, ending);
-    return ending != Event::none;
-  };
-  if (before.mode().kind == WHEEL_HELD && led) omega_z = 0;
-  if (end_if_due()) return false;
-  for (const EventRow& row : event_rows)
-    if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
-  const InForce passed = run.in_force;
-  if (const EventRow& spin_changes = event_row(Event::spin_changes); led && has_occurred(spin_changes, w))
-    follow_event(spin_changes, w.setup, run.t, run.y(), run.in_force);
-  else
-    decide_mode(w.setup, run.t, run.y(), run.in_force);
-  note_changes(w, passed);
-  if (end_if_due()) return false;
-  return omega_z != spin || differ(before.mode(), run.in_force.mode()) ||
-         before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
-}
-
 }  // namespace
 
 int indicator_count() {
@@ -187,10 +155,39 @@ bool has_event(Wheel& w) {
                      [&](const EventRow& row) { return row.in_model_exchange && indicator(row, w) <= 0; });
 }
 
+//   1  a held wheel loses what its spin has of the solver's error
+//   2  the run ends where it does so in the mode that held up to here
+//   3  what is observed changes its side: the ground may pull from here on
+//   4  the mode follows from the motion, or anew where the caller has set the spin
+//   5  the run ends where it does so in the mode that was decided
+// Of the state, an event changes omega_z alone. The side of the ground counts as a bend even without friction: its
+// indicator has changed its sign.
 bool decide_in_event_mode(Wheel& w) {
-  const bool bends = decide_events(w);
-  w.run.x[WHEEL_EULER_OMEGA_Z] = w.run.y()[WHEEL_OMEGA_3];  // all that an event changes of the state
-  return bends;
+  Run& run = w.run;
+  const InForce before = run.in_force;
+  double& omega_z = run.x[WHEEL_EULER_OMEGA_Z];
+  const double spin = omega_z;
+  const bool led = is_led(w);
+  const auto end_if_due = [&] {
+    const Event ending = ending_at(w);
+    if (ending != Event::none) end_run(w, ending);
+    return ending != Event::none;
+  };
+  if (before.mode().kind == WHEEL_HELD && led) omega_z = run.y()[WHEEL_OMEGA_3] = 0;
+  if (end_if_due()) return false;
+  for (const EventRow& row : event_rows)
+    if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
+  if (led && has_occurred(event_row(Event::spin_changes), w)) {
+    pass_event(w, Event::spin_changes);
+    omega_z = run.y()[WHEEL_OMEGA_3];
+  } else {
+    const InForce passed = run.in_force;
+    decide_mode(w.setup, run.t, run.y(), run.in_force);
+    note_changes(w, passed);
+  }
+  if (end_if_due()) return false;
+  return omega_z != spin || differ(before.mode(), run.in_force.mode()) ||
+         before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
 }
 
 bool starts_inside(const Wheel& w) {

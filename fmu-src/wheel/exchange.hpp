@@ -35,9 +35,9 @@ void read_derivatives(Wheel& wheel, double* x_dot);
 void read_indicators(Wheel& wheel, double* z);
 bool has_event(Wheel& wheel);
 
-// Event mode decides the mode that holds from here on. True where the motion bends here, by a state or by the mode:
-// some solvers go on from a step that they took in the old mode, unless they read that the states are new. Where the
-// model ends here, the run ends.
+// Event mode decides the mode that holds from here on. True where the motion bends here, by a state, the mode or the
+// side of the ground: some solvers go on from a step that they took in the old mode, unless they read that the states
+// are new. Where the model ends here, the run ends.
 bool decide_in_event_mode(Wheel& wheel);
 
 // Whether a run can begin; if not, a message is logged. Model exchange has no way to report an end at the start.

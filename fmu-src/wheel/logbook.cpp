@@ -21,7 +21,7 @@ void log_observation(Wheel& wheel, Event event, double t) {
 }
 
 void look_at_grip(Wheel& wheel, double t) {
-  CONSTANT(double, looks, 16, "in a time scale", "often enough to see a swing, so seldom that it costs nothing");
+  CONSTANT(double, looks, 16, "in a time scale", "at most: enough to see a swing, so few that they cost nothing");
   CONSTANT(double, dry_road, 1, "1", "the friction coefficient of a good tyre on a dry road");
   const Setup& setup = wheel.setup;
   const InForce& in_force = wheel.run.in_force;

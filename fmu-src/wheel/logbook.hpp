@@ -10,8 +10,9 @@ double shown_time(const Wheel& wheel, double t);
 // An event that is observed has occurred at t, s, clock of the run: the first of a run is logged.
 void log_observation(Wheel& wheel, Event event, double t);
 // Warns once per run where a loaded wheel, on a road without a limit, needs a friction coefficient above 1: at t, or as
-// far as the solution is known, s, clock of the run. It looks a few times in the wheel's time scale, so that it costs
-// nothing noticeable.
+// far as the solution is known, s, clock of the run. It looks at most once in a step of the solver and a few times in
+// the wheel's time scale, so that it costs nothing noticeable. So the instants at which results are read may move a
+// warning.
 void look_at_grip(Wheel& wheel, double t);
 // Where road or inputs that were set make the wheel jam at this instant: no force satisfies the equations there, and
 // the next step ends the run.

@@ -70,7 +70,7 @@ Result apply_demand(Wheel& w) {
   run.pending = Pending::nothing;
   if (!changed) return {};
   const InForce before = run.in_force;
-  if (run.phase == Phase::unfolded) find_below(w.setup, run.t, run.y(), run.in_force);
+  catch_up_with_orbit(w, run.y(), run.in_force);
   enforce(w.setup, w.demand, run.t, run.y(), run.in_force);
   note_changes(w, before);
   if (run.phase == Phase::at_start) return {};

@@ -69,11 +69,10 @@ inline Road road_asked(const Demand& demand) {
 // What acts on the wheel, and the scene that follows from it for the equations: plain numbers.
 class InForce {
  public:
-  // While a run goes on, take_over alone writes the road, as it was asked for, and the inputs;
-  Road road = {};
+  // Written by take_over and set_below, and where a saved state is read.
+  Road road = {};  // as it was asked for
   Inputs inputs;
-  // set_below alone writes whether the value of an observed event lies below zero.
-  bool below[event_count] = {};
+  bool below[event_count] = {};  // of each observed event: its value lies below zero
 
   InForce() = default;
   // The state before anything is set: a level road, no inputs and no mode.

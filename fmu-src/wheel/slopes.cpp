@@ -18,7 +18,7 @@ namespace wheel {
 namespace {
 
 // The derivatives of the variables that are asked for by one quantity x: `ask` for each, `take` or `refine` once, and
-// read them by `of`. `at`: (x) => the instant with this value of x, or none where there is no such wheel.
+// read them by `of`. `instant_with`: (x) => the instant with this value of x, or none where there is no such wheel.
 class Slopes {
  public:
   void ask(unsigned variable) {
@@ -27,16 +27,16 @@ class Slopes {
   }
 
   // With steps of h. tau_rate: the part of the rate of tau that the instants leave out.
-  template <class At>
-  void take(double x, double h, const At& at, double tau_rate = 0) {
-    quotients_.take(x, h, [&](double moved) { return numbers_of(at(moved)); });
+  template <class F>
+  void take(double x, double h, const F& instant_with, double tau_rate = 0) {
+    quotients_.take(x, h, [&](double moved) { return numbers_of(instant_with(moved)); });
     complete(tau_rate);
   }
 
   // With steps that become smaller, for what bends within the first; false where none is possible.
-  template <class At>
-  bool refine(double x, double scale, const At& at) {
-    const bool done = quotients_.refine(x, scale, [&](double moved) { return numbers_of(at(moved)); });
+  template <class F>
+  bool refine(double x, double scale, const F& instant_with) {
+    const bool done = quotients_.refine(x, scale, [&](double moved) { return numbers_of(instant_with(moved)); });
     complete(0);
     return done;
   }
@@ -89,19 +89,19 @@ bool take_by_parameter(const Wheel& w, unsigned parameter, Slopes& slopes) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
                      parameter == variable::slope_direction;  // the same after a whole turn
-  const double set = w.demand.value(parameter), x = turns ? wheel_less_turns(set) : set, size = std::fabs(x);
-  const double scale = row.min == 0 && x != 0 ? size : std::fmax(size, 1);
+  const double asked = w.demand.value(parameter), value = turns ? wheel_less_turns(asked) : asked;
+  const double scale = row.min == 0 && value != 0 ? std::fabs(value) : std::fmax(std::fabs(value), 1);
   Record moved = static_cast<const Record&>(w);
   double y[max_states];
   read_state(w, y);
   moved.run.set_y(y);
   moved.run.pending = Pending::set;
-  const auto at = [&](double moved_x) -> std::optional<Instant> {
-    moved.demand.value(parameter) = moved_x;
+  const auto instant_with = [&](double moved_value) -> std::optional<Instant> {
+    moved.demand.value(parameter) = moved_value;
     const bool exists = has_begun(moved.run.phase) || prepare(moved, Reporter());
     return exists ? std::optional<Instant>(std::in_place, moved, moved.run.y()) : std::nullopt;
   };
-  return slopes.refine(x, scale, at);
+  return slopes.refine(value, scale, instant_with);
 }
 
 // The ground as it is at this instant, by the sign of N.
@@ -134,29 +134,31 @@ double size_of(const Setup& setup, const WheelFriction& mode, int state, double 
 void take_at_instant(const Wheel& w, unsigned known, Slopes& slopes) {
   const Setup& setup = w.setup;
   Instant here = instant_of(w);
-  if (known == variable::M_brake) put_brake_in_use(w.run.in_force, here);
+  double y[max_states];
+  read_state(w, y);
+  if (known == variable::M_brake) put_brake_in_use(in_force_now(w, y), here);
   keep_ground(here);
   if (setup.model_exchange)  // a small step must not vanish in the rounding of a large angle
     for (const int angle : {WHEEL_EULER_PSI, WHEEL_EULER_PHI}) here.x[angle] = wheel_less_turns(here.x[angle]);
-  const int in_x = setup.model_exchange ? place_in_x(known) : -1;
-  const auto place_in = [&](Instant& instant) -> double& {
-    return in_x >= 0 ? instant.x[in_x] : *load_entry(instant.scene.load, static_cast<int>(known - first_input));
+  const int place = setup.model_exchange ? place_in_x(known) : -1;
+  const auto known_of = [&](Instant& instant) -> double& {
+    return place >= 0 ? instant.x[place] : *load_entry(instant.scene.load, static_cast<int>(known - first_input));
   };
-  const double x = place_in(here);
-  const double size = size_of(setup, here.scene.friction, in_x >= 0 ? place_in_y(in_x) : -1, x);
+  const double value = known_of(here);
+  const double size = size_of(setup, here.scene.friction, place >= 0 ? place_in_y(place) : -1, value);
   const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.contact() : setup.first_contact;
   const bool begins = here.scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
-  const auto at = [&](double moved_x) {
+  const auto instant_with = [&](double moved_value) {
     Instant moved = here;
-    place_in(moved) = moved_x;
+    known_of(moved) = moved_value;
     if (setup.model_exchange) wheel_reduced_state(moved.x, moved.y);
     if (begins) moved.y[WHEEL_CHI] = first_direction(moved.scene, moved.y);
     return moved;
   };
   if (begins)
-    slopes.refine(x, size, at);
+    slopes.refine(value, size, instant_with);
   else
-    slopes.take(x, first_part * size, at);
+    slopes.take(value, first_part * size, instant_with);
 }
 
 // (y, y_dot) => how fast the wheel moves, 1/s.
@@ -191,14 +193,14 @@ void take_along_motion(const Wheel& w, Slopes& slopes) {
     rate.M[2] += tau_rate;
     mode = {WHEEL_ROLLING, wheel_kappa(&mode, omega_z), 0};
   }
-  const auto at = [&](double t) {
+  const auto instant_after = [&](double t) {
     Instant moved = start;
     for (int i = 0; i < formulation.states; ++i) moved.y[i] += t * rates.y_dot[i];
     for (int i = 0; i < inputs_count; ++i) *load_entry(moved.scene.load, i) += t * *load_entry(rate, i);
     return moved;
   };
   const double pace = pace_of(start.y, rates.y_dot, start.scene.contact == WHEEL_SLIDES);
-  slopes.take(0, pace > 0 ? first_part / pace : 1, at, tau_rate);
+  slopes.take(0, pace > 0 ? first_part / pace : 1, instant_after, tau_rate);
 }
 
 }  // namespace

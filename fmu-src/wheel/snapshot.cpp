@@ -27,18 +27,18 @@ struct Header {
 };
 
 // All that the caller has set, and all of the run that does not follow from it: a new member of Demand, Run or InForce
-// belongs here too, or `complete` computes it; these sizes remind of it. The bounds keep forged numbers harmless, not
-// meaningful.
-static_assert(alignof(Run) != 8 || (sizeof(Demand) == 544 && sizeof(Run) == 800 && sizeof(InForce) == 552));
+// belongs here too, or `complete` computes it. The structured bindings and the sizes remind of it; Run has room for a
+// few bytes without a change of size. The bounds keep forged numbers harmless, not meaningful.
+static_assert(alignof(Run) != 8 || (sizeof(Run) == 800 && sizeof(InForce) == 552));
 void visit(support::Archive& archive, Record& record) {
-  Demand& demand = record.demand;
+  auto& [parameters, inputs, start_time, stop_time, tolerance, kind] = record.demand;
   Run& run = record.run;
   InForce& in_force = run.in_force;
-  for (double& parameter : demand.parameters) archive.anything(parameter);
-  archive.number(demand.start_time);
-  archive.range(demand.stop_time, -archive.greatest, solver::never);
-  archive.range(demand.tolerance, tightest_tolerance, loosest_tolerance);
-  for (auto& input : demand.inputs) {
+  for (double& parameter : parameters) archive.anything(parameter);
+  archive.number(start_time);
+  archive.range(stop_time, -archive.greatest, solver::never);
+  archive.range(tolerance, tightest_tolerance, loosest_tolerance);
+  for (auto& input : inputs) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
@@ -57,13 +57,14 @@ void visit(support::Archive& archive, Record& record) {
   archive.count(contact, WHEEL_GRIPS, WHEEL_SLIDES);
   in_force.set_mode(mode);
   in_force.set_contact(contact);
-  archive.number(in_force.inputs.origin);
-  for (auto& input : in_force.inputs.c) archive.numbers(input, max_order + 1);
+  auto& [origin, c, loaded, braked, varies, guides] = in_force.inputs;  // the last four follow from c
+  archive.number(origin);
+  for (auto& input : c) archive.numbers(input, max_order + 1);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
   double y[max_states];
   std::copy_n(run.latest_y(), max_states, y);
-  demand.kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(y, max_states);
+  kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(y, max_states);
   run.set_y(y);
   for (int i = 0; i < event_count; ++i) {
     archive.count(in_force.below[i], 0, 1);
@@ -85,7 +86,7 @@ bool complete(Record& record) {
   setup = setup_of(demand, run.can_slide);
   if (setup.model_exchange) wheel_reduced_state(run.x, run.y());
   InForce& in_force = run.in_force;
-  // Copies, because take_over writes over what it reads.
+  // Copies, because take_over writes over what it reads. It brings the ground in line with what was read of the events.
   in_force.take_over(setup, Road(in_force.road), in_force.inputs.origin, Inputs(in_force.inputs).c);
   WheelFriction mode = in_force.mode();
   mode.omega_s = mode.kind == WHEEL_REGULARIZED ? setup.omega_s : 0;

@@ -22,7 +22,7 @@ bool check_start(const Record& r, Reading& start, const Reporter& reporter) {
   double sum = row_of(variable::E).read(start) + start.dynamics().tau;
   for (const double force : start.dynamics().lambda) sum += force;
   const auto set = [&](variable::Place v) { return Digits{r.demand.parameters[v], 3}; };
-  return reporter.check(angle_from_flat(start.kinematics().theta) > 0 && std::isfinite(sum),
+  return reporter.check(std::isfinite(sum),
                         "The initial energy or reaction force overflows: m = %s kg, J_z = %s kg m2, r_0 = %s m, "
                         "g = %s m/s2, omega_z = %s rad/s.",
                         set(variable::m), set(variable::J_z), set(variable::r_0), set(variable::g),
@@ -55,8 +55,13 @@ void read_state(const Wheel& w, double* y) {
   run.phase == Phase::unfolded ? w.orbit.read(run.t, y) : w.solver.read(run.t, y);
 }
 
+void catch_up_with_orbit(const Record& r, const double* y, InForce& in_force) {
+  if (r.run.phase == Phase::unfolded) find_below(r.setup, r.run.t, y, in_force);
+}
+
 InForce in_force_now(const Record& r, double* y) {
   InForce in_force = r.run.in_force;
+  catch_up_with_orbit(r, y, in_force);
   if (r.run.shows_demand()) enforce(r.setup, r.demand, r.run.t, y, in_force);
   return in_force;
 }
@@ -68,7 +73,7 @@ Instant::Instant(const Record& r, const double* y_reached)
       transitions(r.run.transitions) {
   std::copy_n(y_reached, max_states, y);
   std::copy_n(r.run.x, WHEEL_EULER_STATES, x);
-  if (r.run.shows_demand()) scene = in_force_now(r, y).scene_at(r.run.t);  // without it, in_force_now only copies
+  if (r.run.shows_demand()) scene = in_force_now(r, y).scene_at(r.run.t);
   scene.ground = WHEEL_GROUND_BY_FORCE;
 }
 

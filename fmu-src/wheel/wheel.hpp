@@ -16,14 +16,17 @@
 //   slopes, quotients, snapshot   derivatives of the variables, by difference quotients; the state as bytes
 //
 // Words for the way from what is asked for to what is in force:
-//   set           the caller's value stands in the demand; a reading shows it (Pending)
-//   enforce       the demand is in force from an instant on: take_over, and the contact and the mode that follow
-//     apply_demand    at the next step of co-simulation
-//     act_at_once     in model exchange
-//     in_force_now    for a reading, on a copy
-//   follow_event  what follows from an event is in force
-//     pass_event      for the run, counted and logged
-//     follow_on_orbit ahead of the run
+//   set                      the caller's value stands in the demand; a reading shows it (Pending)
+//   enforce                  the demand is in force from an instant on: take_over, then a jump of the carrier, contact
+//                            and mode
+//     in_force_now           on a copy, for a reading
+//     apply_demand           at the next step of co-simulation
+//   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once where the
+//                            road has changed
+//   follow_event             what follows from an event is in force
+//     pass_event             for the run, counted and logged
+//     follow_on_orbit        ahead of the run
+//     catch_up_with_orbit    afterwards, of events that are only observed
 #pragma once
 
 #include <optional>
@@ -48,6 +51,9 @@ struct Record {
 // (y: the state at the instant reached) => what is in force for what follows, with what was set since the last step. y
 // changes where a slip begins or ends, or the carrier jumps.
 InForce in_force_now(const Record& record, double* y);
+// (y: the state at the instant reached) => which observed events lie below zero. A run on an orbit does not follow
+// them.
+void catch_up_with_orbit(const Record& record, const double* y, InForce& in_force);
 
 struct Wheel;
 
@@ -133,10 +139,10 @@ void set(Wheel& wheel, unsigned variable, double value, int order = 0);
 void begin_initialization(Wheel& wheel);
 // Computes the initial state from the present parameters. If there is none, false, with one message per fault.
 bool prepare(Record& record, const Reporter& reporter);
-// `prepare` where the parameters have changed since it was last done, so that each message comes once. False as long as
-// they are faulty; true where no initial state is due.
+// `prepare` where the parameters have changed since it was last done, so that reading several values logs their faults
+// once. False as long as they are faulty; true where no initial state is due.
 bool prepare_once(Wheel& wheel);
-// The run can begin; false if there is no initial state.
+// The run can begin; false if there is no initial state, with all faults, even if they were logged before.
 bool end_initialization(Wheel& wheel);
 // The run ends at the instant reached, by an event.
 void end_run(Wheel& wheel, Event event);
