@@ -4,6 +4,7 @@
 
 #include "exchange.hpp"
 #include "instance.hpp"
+#include "setting.hpp"
 #include "slopes.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic;
@@ -23,7 +24,8 @@ bool is_unknown(unsigned v) { return v >= wheel::stored_count && wheel::is_varia
 // During the run outputs depend on inputs alone, in model exchange on the states too; in initialization mode they
 // depend on the parameters.
 bool is_known(const Instance& i, unsigned v) {
-  const bool exchanged = i.wheel.demand.kind == wheel::Kind::model_exchange, begun = has_begun(i.wheel.run.phase);
+  const bool exchanged = i.wheel.demand.kind == wheel::Kind::model_exchange,
+             begun = has_left_initialization(i.wheel.run.phase);
   return is_input(v) || (begun ? exchanged && wheel::place_in_x(v) >= 0 : v < wheel::stored_count);
 }
 

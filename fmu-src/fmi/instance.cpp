@@ -6,6 +6,7 @@
 #include <new>
 
 #include "logbook.hpp"
+#include "setting.hpp"
 
 namespace fmi {
 

@@ -4,6 +4,8 @@
 #include <cstring>
 
 #include "instance.hpp"
+#include "setting.hpp"
+#include "transitions.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Topic;
 namespace legality = fmi::legality;

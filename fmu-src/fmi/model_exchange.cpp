@@ -4,6 +4,7 @@
 
 #include "exchange.hpp"
 #include "instance.hpp"
+#include "setting.hpp"
 
 using fmi::guarded, fmi::Instance, fmi::no_fault, wheel::Phase, wheel::Topic;
 namespace legality = fmi::legality;
@@ -34,12 +35,12 @@ auto read_numbers(fmi2Real values[], std::size_t count, int needed, const char* 
 }  // namespace
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return guarded(c, legality::while_integrating, [](Instance& i) { wheel::enter(i.change(), Phase::event_mode); });
+  return guarded(c, legality::while_integrating, [](Instance& i) { wheel::enter_mode(i.change(), Phase::event_mode); });
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
   return guarded(c, legality::enter_continuous_time,
-                 [](Instance& i) { wheel::enter(i.change(), Phase::continuous_time); });
+                 [](Instance& i) { wheel::enter_mode(i.change(), Phase::continuous_time); });
 }
 
 // One pass is enough: the law that is decided holds.

@@ -5,6 +5,7 @@
 
 #include "exchange.hpp"
 #include "instance.hpp"
+#include "setting.hpp"
 
 using fmi::guarded, fmi::Instance, wheel::Role, wheel::Topic, wheel::Type;
 namespace legality = fmi::legality;

@@ -144,11 +144,10 @@ static_assert(std::all_of(event_rows, event_rows + row_count, is_sound), "order 
 // Extreme loads on a tiny wheel would overflow, but a saved state holds margins as finite numbers.
 constexpr double largest_margin = 1e100;
 
-// The margin of an observed event is that of its next change: where the value lies below zero already, it falls to zero
-// as the value rises. So an event is never crossed twice for one change of side.
 void change_side(Event event, InForce& in_force) { in_force.set_below(event, !in_force.is_below(event)); }
 
-// (value) => margin: below zero where the event has occurred
+// (value) => margin: below zero where the event has occurred. That of an observed event is the margin of its next
+// change: where the value lies below zero already, it falls to zero as the value rises.
 double signed_margin(const EventRow& row, const InForce& in_force, double value) {
   return row.observation ? (in_force.is_below(row.event) ? -value : value) + row.rounding : value;
 }
@@ -185,7 +184,7 @@ double least_margin(const Setup& setup, const InForce& in_force, const double* y
   return least < -largest_margin ? -largest_margin : least;
 }
 
-void find_below(const Setup& setup, double t, const double* y, InForce& in_force) {
+void set_sides(const Setup& setup, double t, const double* y, InForce& in_force) {
   for (const EventRow& row : event_rows)
     if (is_observed(row, setup) && row.can_occur(setup, in_force) && margin_of(row, setup, in_force, t, y) < 0)
       change_side(row.event, in_force);

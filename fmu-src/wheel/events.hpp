@@ -3,7 +3,7 @@
 #pragma once
 
 #include "constant.hpp"
-#include "run.hpp"
+#include "in_force.hpp"
 
 namespace wheel {
 
@@ -58,9 +58,10 @@ inline bool ends_run(const EventRow& row, const Setup& setup) { return row.ends 
 // Logged where it first occurs in a run.
 inline bool is_observed(const EventRow& row, const Setup& setup) { return row.observation && !ends_run(row, setup); }
 
-// Puts in force what follows from an event that does not end the run. An event that is only observed changes nothing
-// else. pass_event (transitions.hpp) does it for a run, and counts and logs too. follow_on_orbit (posed_problem.hpp)
-// does it ahead of the run. After a motion in which no event was followed, find_below finds those that are observed.
+// Puts in force what follows from an event that does not end the run. An event that is only observed changes its
+// side alone. pass_event (transitions.hpp) does it for a run, and counts and logs too. follow_on_orbit
+// (posed_problem.hpp) does it ahead of the run. After a motion in which no event was followed, set_sides finds those
+// that are observed.
 Consequence follow_event(const EventRow& row, const Setup& setup, double t, double* y, InForce& in_force);
 
 // (row, t, y) => its margin
@@ -70,6 +71,6 @@ double margin_of(const EventRow& row, const Setup& setup, const InForce& in_forc
 double least_margin(const Setup& setup, const InForce& in_force, const double* y, double N);
 
 // (t, y) => which observed events lie below zero, after a motion in which they were not followed
-void find_below(const Setup& setup, double t, const double* y, InForce& in_force);
+void set_sides(const Setup& setup, double t, const double* y, InForce& in_force);
 
 }  // namespace wheel

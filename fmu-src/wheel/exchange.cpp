@@ -40,9 +40,9 @@ void rates_of_x(const Record& r, const double* x, const double* y, double* x_dot
 // (row, ahead: s) => its margin at the instant reached, or `ahead` later along the present rates
 double margin_at(const EventRow& row, const Record& r, double ahead = 0) {
   double x[state_count], x_dot[state_count], y[max_states] = {};
-  std::copy_n(r.run.x, state_count, x);
+  std::copy_n(r.run.x(), state_count, x);
   if (ahead > 0) {
-    rates_of_x(r, r.run.x, r.run.y(), x_dot);
+    rates_of_x(r, r.run.x(), r.run.y(), x_dot);
     for (int i = 0; i < state_count; ++i) x[i] += ahead * x_dot[i];
   }
   if (row.event != Event::lies_flat) keep_above_ground(x);
@@ -108,25 +108,23 @@ void act_at_once(Wheel& w) {
 }
 
 // A model that has ended stays ended: some importers go on to continuous-time mode before they heed the event info.
-void enter(Wheel& w, Phase phase) {
+void enter_mode(Wheel& w, Phase phase) {
   if (w.run.phase != Phase::ended) w.run.phase = phase;
 }
 
 void set_time(Wheel& w, double time) { w.run.set_time_alone(time - w.demand.start_time); }
 
-void try_states(Wheel& w, const double* x) {
-  std::copy_n(x, state_count, w.run.x);
-  wheel_reduced_state(w.run.x, w.run.y());
-}
+void try_states(Wheel& w, const double* x) { w.run.set_x(x); }
 
 void impose_state(Wheel& w, unsigned variable, double value) {
-  for (int i = 0; i < state_count; ++i)
-    if (states_of_x[i].variable == variable) w.run.x[i] = value;
-  wheel_reduced_state(w.run.x, w.run.y());
+  double x[state_count];
+  read_states(w, x);
+  x[place_in_x(variable)] = value;
+  w.run.set_x(x);
   decide_mode(w.setup, w.run.t, w.run.y(), w.run.in_force);
 }
 
-void read_states(const Wheel& w, double* x) { std::copy_n(w.run.x, state_count, x); }
+void read_states(const Wheel& w, double* x) { std::copy_n(w.run.x(), state_count, x); }
 
 void read_nominals(const Wheel& w, double* x) {
   double scales[max_states];
@@ -136,7 +134,7 @@ void read_nominals(const Wheel& w, double* x) {
 
 void read_derivatives(Wheel& w, double* x_dot) {
   double x[state_count], y[max_states] = {};
-  std::copy_n(w.run.x, state_count, x);
+  std::copy_n(w.run.x(), state_count, x);
   keep_above_ground(x);
   wheel_reduced_state(x, y);
   ++w.run.counted.rhs;
@@ -165,7 +163,7 @@ bool has_event(Wheel& w) {
 bool decide_in_event_mode(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
-  double& omega_z = run.x[WHEEL_EULER_OMEGA_Z];
+  const double& omega_z = run.y()[WHEEL_OMEGA_3];
   const double spin = omega_z;
   const bool led = is_led(w);
   const auto end_if_due = [&] {
@@ -173,13 +171,13 @@ bool decide_in_event_mode(Wheel& w) {
     if (ending != Event::none) end_run(w, ending);
     return ending != Event::none;
   };
-  if (before.mode().kind == WHEEL_HELD && led) omega_z = run.y()[WHEEL_OMEGA_3] = 0;
+  if (before.mode().kind == WHEEL_HELD && led) run.set_spin(0);
   if (end_if_due()) return false;
   for (const EventRow& row : event_rows)
     if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
   if (led && has_occurred(event_row(Event::spin_changes), w)) {
     pass_event(w, Event::spin_changes);
-    omega_z = run.y()[WHEEL_OMEGA_3];
+    run.set_spin(omega_z);
   } else {
     const InForce passed = run.in_force;
     decide_mode(w.setup, run.t, run.y(), run.in_force);

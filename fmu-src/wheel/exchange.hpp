@@ -19,7 +19,7 @@ int place_in_y(int in_x);
 // where the road has changed.
 void act_at_once(Wheel& wheel);
 // To event mode or continuous-time mode.
-void enter(Wheel& wheel, Phase phase);
+void enter_mode(Wheel& wheel, Phase phase);
 // (time: s, the caller's)
 void set_time(Wheel& wheel, double time);
 // The states that a solver tries: no event, nothing is decided or logged.

@@ -16,9 +16,12 @@ WheelFriction rolling(bool forward) { return {WHEEL_ROLLING, forward ? 1.0 : -1.
 // (moment that would hold the wheel) => rolling against it
 WheelFriction released_from(const Hold& hold) { return rolling(!(hold.tau > 0)); }
 
+// (coefficient of rolling resistance, m, whether a brake is in use) => whether a moment can resist the spin
+bool resists(double s, bool braked) { return s != 0 || braked; }
+
 // (scene, braked: whether a brake is in use, y) => the mode
 WheelFriction mode_at(const Setup& setup, const WheelScene& scene, bool braked, const double* y) {
-  if (scene.wheel.s == 0 && !braked) return frictionless;
+  if (!resists(scene.wheel.s, braked)) return frictionless;
   const double omega_z = y[WHEEL_OMEGA_3];
   const bool regularized = setup.friction_law == regularized_law;
   const bool outside = setup.has_layer() && std::fabs(omega_z) > layer_edge(setup);
@@ -31,8 +34,7 @@ WheelFriction mode_at(const Setup& setup, const WheelScene& scene, bool braked, 
 // Whether the modes of a wheel that starts to slide are tried one by one, held first. That is where it has no spin, and
 // rolling friction or a brake.
 bool may_be_held(const Setup& setup, const InForce& in_force, const double* y) {
-  const bool some = in_force.road.s != 0 || in_force.inputs.braked;
-  return some && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
+  return resists(in_force.road.s, in_force.inputs.braked) && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }
 
 // (scene, y) => the slip as it would be without friction

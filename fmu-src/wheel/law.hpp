@@ -16,7 +16,7 @@
 #pragma once
 
 #include "constant.hpp"
-#include "run.hpp"
+#include "in_force.hpp"
 
 namespace wheel {
 

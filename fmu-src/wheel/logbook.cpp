@@ -39,7 +39,7 @@ void look_at_grip(Wheel& wheel, double t) {
 }
 
 void warn_of_jam(const Wheel& wheel) {
-  if (!wheel.run.shows_demand() || !wheel.setup.can_slide()) return;
+  if (!wheel.setup.can_slide() || !takes_effect(wheel)) return;
   double y[max_states];
   read_state(wheel, y);
   const InForce in_force = in_force_now(wheel, y);

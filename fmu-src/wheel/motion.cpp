@@ -30,14 +30,6 @@ bool is_known(const Wheel& w, double t) {
   return w.run.phase == Phase::unfolded && t <= w.orbit.until();
 }
 
-// Whether what was set since the last step differs from what is in force.
-bool has_changed(const Wheel& w) {
-  const InForce& in_force = w.run.in_force;
-  const double t = w.run.t;
-  const double rounding = solver::rounding_at(std::fabs(w.demand.start_time) + std::fabs(t));
-  return in_force.road != road_asked(w.demand) || in_force.inputs.change_at(t, rounding, w.demand.inputs);
-}
-
 struct Result {
   Progress progress = Progress::done;
   Event ending = Event::none;     // the event by which the run has ended, where it stands
@@ -66,7 +58,7 @@ Result start_solver(Wheel& w) {
 // time since the last change.
 Result apply_demand(Wheel& w) {
   Run& run = w.run;
-  const bool changed = run.pending != Pending::nothing && has_changed(w);
+  const bool changed = run.pending != Pending::nothing && differs_from_demand(w);
   run.pending = Pending::nothing;
   if (!changed) return {};
   const InForce before = run.in_force;
@@ -92,7 +84,7 @@ Key key_of(const Record& record) {
   for (const unsigned v : {variable::psi_start, variable::phi_start, variable::X_O_start, variable::Y_O_start})
     key[v] = 0;
   key[first_input] = record.demand.tolerance;
-  key[first_input + 1] = record.run.can_slide;
+  key[first_input + 1] = record.setup.can_slide();
   return key;
 }
 
@@ -105,7 +97,7 @@ bool enter_orbit(Wheel& w) {
   // A carrier that turned at the start, and has stopped since, has turned the wheel away from its initial state.
   const bool turned =
       w.run.phase == Phase::at_start && !std::equal(w.run.y(), w.run.y() + max_states, w.setup.initial_state);
-  if (!w.setup.unfolds || acted_on || in_force.slides() || turned) return false;
+  if (!w.setup.may_unfold || acted_on || in_force.slides() || turned) return false;
   Record ahead = static_cast<const Record&>(w);  // events on the orbit are in force for it alone, not yet for the run
   const Key key = key_of(w);
   const orbit::FreeMotion motion = {problem_of(ahead),

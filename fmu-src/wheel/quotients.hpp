@@ -47,8 +47,11 @@ class Quotients {
   bool refine(double x, double scale, const F& f) {
     constexpr double finest = std::numeric_limits<double>::epsilon();
     CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
-    for (double part = first_part; part > (steps_ > 0 ? finest : finest_first) && !settle(scale); part *= 0.1)
+    double part = first_part;
+    while (part > (steps_ > 0 ? finest : finest_first) && !settle(scale)) {
       step(about_x, x, part * scale, f) || step(above_x, x, part * scale, f) || step(below_x, x, part * scale, f);
+      part *= 0.1;
+    }
     return steps_ > 0;
   }
 

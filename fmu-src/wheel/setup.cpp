@@ -143,8 +143,8 @@ Setup setup_of(const Demand& demand, bool can_slide) {
   setup.friction_law = static_cast<FrictionLaw>(choice_of(v[friction_law]));
   setup.omega_s = v[omega_s];
   setup.method = static_cast<SolverMethod>(choice_of(v[method]));
-  setup.unfolds = (v[J_x] == v[J_y] || setup.guided) && choice_of(v[formulation]) == automatic_formulation &&
-                  setup.method == automatic_method;
+  setup.may_unfold = (v[J_x] == v[J_y] || setup.guided) && choice_of(v[formulation]) == automatic_formulation &&
+                     setup.method == automatic_method;
   setup.keep_contact = v[keep_contact] != 0;
   setup.tolerance = demand.tolerance;
   const auto origin = [&](double start, double state) { return Origin{start, setup.model_exchange ? start : state}; };

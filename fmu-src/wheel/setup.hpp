@@ -67,7 +67,7 @@ struct Setup {
   FrictionLaw friction_law = exact_law;
   double omega_s;  // rad/s, width of the regularized law
   SolverMethod method = automatic_method;
-  bool unfolds;  // without friction, brake and load the motion repeats: J_x = J_y or guided, choices automatic
+  bool may_unfold;  // J_x = J_y or guided, choices automatic: where nothing acts, the motion repeats (enter_orbit)
   bool keep_contact;
   double tolerance;  // relative, of the whole solution
   double initial_state[max_states];

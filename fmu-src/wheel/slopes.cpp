@@ -1,6 +1,6 @@
 // Derivatives by difference quotients (quotients.hpp). The reactions are linear in the load, so quotients by an input
 // are exact up to rounding. The derivative of a variable that is not linear in the forces follows from those of forces
-// and motion (Row::by_force). A rate that another variable has is read there (Row::read_rate).
+// and motion (Row::by_force). A rate that the equations give is read (Row::read_rate).
 #include "slopes.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "exchange.hpp"
 #include "law.hpp"
 #include "quotients.hpp"
+#include "setting.hpp"
 
 namespace wheel {
 namespace {
@@ -82,24 +83,30 @@ class Slopes {
   Numbers slopes_ = {};
 };
 
-// By a parameter in the initial state, or by a rate of the carrier, which jumps. The step is relative to the parameter
-// where it cannot be negative. For an angle, a place or a rate it is relative to the parameter or to 1, whichever is
-// larger.
-bool take_by_parameter(const Wheel& w, unsigned parameter, Slopes& slopes) {
+// By what is set: a parameter, in the initial state, or a rate of the carrier, which jumps. The step is relative to the
+// parameter where it cannot be negative. For an angle, a place or a rate it is relative to the parameter or to 1,
+// whichever is larger.
+bool take_by_setting(const Wheel& w, unsigned parameter, Slopes& slopes) {
   const Row& row = row_of(parameter);
   const bool turns = parameter == variable::psi_start || parameter == variable::phi_start ||
                      parameter == variable::slope_direction;  // the same after a whole turn
   const double asked = w.demand.value(parameter), value = turns ? wheel_less_turns(asked) : asked;
   const double scale = row.min == 0 && value != 0 ? std::fabs(value) : std::fmax(std::fabs(value), 1);
   Record moved = static_cast<const Record&>(w);
-  double y[max_states];
-  read_state(w, y);
-  moved.run.set_y(y);
-  moved.run.pending = Pending::set;
+  double y_now[max_states];
+  read_state(w, y_now);
+  const bool begun = has_left_initialization(w.run.phase);
   const auto instant_with = [&](double moved_value) -> std::optional<Instant> {
     moved.demand.value(parameter) = moved_value;
-    const bool exists = has_begun(moved.run.phase) || prepare(moved, Reporter());
-    return exists ? std::optional<Instant>(std::in_place, moved, moved.run.y()) : std::nullopt;
+    if (!begun && !prepare(moved, Reporter())) return std::nullopt;
+    if (!begun) return Instant(moved, moved.run.y());
+    // A rate of the carrier, to which it jumps from the present state: enforced even where nothing has moved.
+    double y[max_states];
+    std::copy_n(y_now, max_states, y);
+    moved.run.in_force = w.run.in_force;
+    moved.run.pending = Pending::nothing;
+    enforce(moved.setup, moved.demand, moved.run.t, y, moved.run.in_force);
+    return Instant(moved, y);
   };
   return slopes.refine(value, scale, instant_with);
 }
@@ -146,7 +153,7 @@ void take_at_instant(const Wheel& w, unsigned known, Slopes& slopes) {
   };
   const double value = known_of(here);
   const double size = size_of(setup, here.scene.friction, place >= 0 ? place_in_y(place) : -1, value);
-  const WheelContactMode before = has_begun(w.run.phase) ? w.run.in_force.contact() : setup.first_contact;
+  const WheelContactMode before = has_left_initialization(w.run.phase) ? w.run.in_force.contact() : setup.first_contact;
   const bool begins = here.scene.contact == WHEEL_SLIDES && before == WHEEL_GRIPS;
   const auto instant_with = [&](double moved_value) {
     Instant moved = here;
@@ -181,7 +188,7 @@ void take_along_motion(const Wheel& w, Slopes& slopes) {
   const WheelFormulation& formulation = formulation_of(setup, start.scene.contact);
   const Rates rates = rates_of(setup, start.scene, start.y);
   Inputs inputs = w.run.in_force.inputs;
-  if (w.run.shows_demand()) inputs.take_over(w.run.t, w.demand.inputs);
+  if (takes_effect(w)) inputs.take_over(w.run.t, w.demand.inputs);
   WheelLoad rate = inputs.load_rate_at(w.run.t);
   WheelFriction& mode = start.scene.friction;
   double tau_rate = 0;
@@ -235,7 +242,7 @@ bool add_slopes(const Wheel& w, unsigned known, double seed, Listed unknowns, st
   for (std::size_t k = 0; k < count; ++k) slopes.ask(unknowns[k]);
   if (!parameter && !guides)
     take_at_instant(w, known, slopes);
-  else if (!take_by_parameter(w, known, slopes))
+  else if (!take_by_setting(w, known, slopes))
     return false;
   for (std::size_t k = 0; k < count; ++k) sums[k] += seed * slopes.of(unknowns[k]);
   return true;

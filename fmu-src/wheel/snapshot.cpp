@@ -26,14 +26,13 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// All that the caller has set, and all of the run that does not follow from it: a new member of Demand, Run or InForce
-// belongs here too, or `complete` computes it. The structured bindings and the sizes remind of it; Run has room for a
-// few bytes without a change of size. The bounds keep forged numbers harmless, not meaningful.
+// The three functions below visit all that the caller has set, and all of the run that does not follow from it. A new
+// member of Demand, InForce or Run belongs here too, or `complete` computes it: the structured bindings and the sizes
+// remind of it, although Run has room for a few bytes more. The bounds keep forged numbers harmless, not meaningful.
 static_assert(alignof(Run) != 8 || (sizeof(Run) == 800 && sizeof(InForce) == 552));
-void visit(support::Archive& archive, Record& record) {
-  auto& [parameters, inputs, start_time, stop_time, tolerance, kind] = record.demand;
-  Run& run = record.run;
-  InForce& in_force = run.in_force;
+
+void visit(support::Archive& archive, Demand& demand) {
+  auto& [parameters, inputs, start_time, stop_time, tolerance, kind] = demand;  // the kind is in the mark
   for (double& parameter : parameters) archive.anything(parameter);
   archive.number(start_time);
   archive.range(stop_time, -archive.greatest, solver::never);
@@ -42,14 +41,13 @@ void visit(support::Archive& archive, Record& record) {
     archive.anything(input[0]);
     archive.numbers(input + 1, max_order);
   }
-  archive.count(run.pending, 0, static_cast<int>(Pending::set));
-  archive.count(run.can_slide, 0, 1);
-  archive.count(run.phase, 0, phase_count - 1);
-  archive.count(run.ended_by, 0, event_count - 1);
-  for (double* x : {&in_force.road.s, &in_force.road.mu_max, &in_force.road.mu_slide})
-    archive.range(*x, 0, archive.greatest);
-  archive.range(in_force.road.slope, 0, upright);
-  archive.range(in_force.road.slope_direction, -largest_angle, largest_angle);
+}
+
+void visit(support::Archive& archive, InForce& in_force) {
+  auto& [s, mu_max, mu_slide, slope, slope_direction] = in_force.road;
+  for (double* x : {&s, &mu_max, &mu_slide}) archive.range(*x, 0, archive.greatest);
+  archive.range(slope, 0, upright);
+  archive.range(slope_direction, -largest_angle, largest_angle);
   WheelFriction mode = in_force.mode();
   WheelContactMode contact = in_force.contact();
   archive.count(mode.kind, WHEEL_NO_LAW, WHEEL_REGULARIZED);
@@ -60,18 +58,34 @@ void visit(support::Archive& archive, Record& record) {
   auto& [origin, c, loaded, braked, varies, guides] = in_force.inputs;  // the last four follow from c
   archive.number(origin);
   for (auto& input : c) archive.numbers(input, max_order + 1);
+  for (int i = 0; i < event_count; ++i) {
+    bool below = in_force.is_below(static_cast<Event>(i));
+    archive.count(below, 0, 1);
+    in_force.set_below(static_cast<Event>(i), below);
+  }
+}
+
+void visit(support::Archive& archive, Run& run, Kind kind) {
+  archive.count(run.pending, 0, static_cast<int>(Pending::set));
+  archive.count(run.can_slide, 0, 1);
+  archive.count(run.phase, 0, phase_count - 1);
+  archive.count(run.ended_by, 0, event_count - 1);
+  visit(archive, run.in_force);
   archive.number(run.t, run.last_change);
   archive.range(run.grip_due, 0, solver::never);
-  double y[max_states];
+  double x[WHEEL_EULER_STATES], y[max_states];
+  std::copy_n(run.x(), WHEEL_EULER_STATES, x);
   std::copy_n(run.latest_y(), max_states, y);
-  kind == Kind::model_exchange ? archive.numbers(run.x, WHEEL_EULER_STATES) : archive.numbers(y, max_states);
-  run.set_y(y);
-  for (int i = 0; i < event_count; ++i) {
-    archive.count(in_force.below[i], 0, 1);
-    archive.count(run.logged[i], 0, 1);
-  }
+  kind == Kind::model_exchange ? archive.numbers(x, WHEEL_EULER_STATES) : archive.numbers(y, max_states);
+  kind == Kind::model_exchange ? run.set_x(x) : run.set_y(y);
+  for (bool& logged : run.logged) archive.count(logged, 0, 1);
   archive.tally(run.transitions);
   for (long long* count : run.counted.all()) archive.tally(*count);
+}
+
+void visit(support::Archive& archive, Record& record) {
+  visit(archive, record.demand);
+  visit(archive, record.run, record.demand.kind);
 }
 
 // Completes a run that was read, by all that follows from its demand. False where the demand describes no wheel, or the
@@ -84,7 +98,6 @@ bool complete(Record& record) {
   if (!has_state(run.phase)) return true;
   if (!check_values(demand, run.can_slide, Checked::during_run, Reporter())) return false;
   setup = setup_of(demand, run.can_slide);
-  if (setup.model_exchange) wheel_reduced_state(run.x, run.y());
   InForce& in_force = run.in_force;
   // Copies, because take_over writes over what it reads. It brings the ground in line with what was read of the events.
   in_force.take_over(setup, Road(in_force.road), in_force.inputs.origin, Inputs(in_force.inputs).c);

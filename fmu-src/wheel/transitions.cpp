@@ -1,4 +1,4 @@
-// How a run passes an event, and what has changed since.
+// How a run passes an event, what has changed since, and how it ends.
 #include "transitions.hpp"
 
 #include "events.hpp"
@@ -6,6 +6,16 @@
 #include "logbook.hpp"
 
 namespace wheel {
+namespace {
+
+// Leads to a phase without further steps: the solution is not needed any more.
+void freeze(Wheel& w, Phase phase) {
+  update_state(w);
+  w.run.counted = counters_of(w.run, w.solver);
+  w.run.phase = phase;
+}
+
+}  // namespace
 
 Consequence pass_event(Wheel& wheel, Event event) {
   Run& run = wheel.run;
@@ -40,5 +50,13 @@ void note_changes(Wheel& wheel, const InForce& before, Event by) {
                      : slid  ? "slides in another direction"
                              : "starts to slide");
 }
+
+void end_run(Wheel& w, Event event) {
+  w.run.ended_by = event;
+  freeze(w, Phase::ended);
+  log_ending(w, event);
+}
+
+void close(Wheel& w) { freeze(w, Phase::closed); }
 
 }  // namespace wheel

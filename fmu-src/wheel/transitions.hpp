@@ -1,4 +1,4 @@
-// Transitions of a run: events that do not end it, and changes of mode and contact, counted and logged.
+// Transitions of a run: events, changes of mode and contact, counted and logged, and its end.
 #pragma once
 
 #include "wheel.hpp"
@@ -10,5 +10,10 @@ solver::Consequence pass_event(Wheel& wheel, Event event);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
 // spin, and between rolling and sliding.
 void note_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
+
+// The run ends at the instant reached, by an event.
+void end_run(Wheel& wheel, Event event);
+// The caller ends the run.
+void close(Wheel& wheel);
 
 }  // namespace wheel

@@ -1,6 +1,7 @@
 // The FMU's variables as one table, in the order of the description. Names, types, roles, start values and limits
 // come from modelDescription.xml at build time (variables.inc, by tools/wheelfmu/fmu/variable_rows.py). How a
-// calculated variable is read, and further limits, stand in variables.cpp; rules about several parameters in setup.cpp.
+// calculated variable is read, and further limits, stand in variables.cpp; that of theta_start, and rules
+// about several parameters, in setup.cpp.
 // Units and frames: docs/variables.md.
 #pragma once
 
@@ -46,7 +47,7 @@ struct Row {
   Role role;
   double start, min, max;         // of stored variables; others have no limits
   double (*read)(Reading&);       // computed variables, else null
-  double (*read_rate)(Reading&);  // d/dt where another variable has it, else null: see slopes.cpp
+  double (*read_rate)(Reading&);  // d/dt where the equations give it, else null: see slopes.cpp
   // The derivative of what is not linear in the forces, from the present and the rates; else null.
   double (*by_force)(const Acting& acting, const Acting& rate);
 };

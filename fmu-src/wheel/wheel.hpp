@@ -8,20 +8,22 @@
 //
 // The other headers of this folder, each below those that it includes:
 //   reporter, variables, inputs   messages; the table of the variables; inputs as polynomials of time
-//   setup, run                    what follows from the parameters; what is in force, and how far the run has come
+//   setup, in_force, run          what follows from the parameters; what acts on the wheel; how far the run has come
 //   law, events                   how the mode of rolling and the contact are decided; the table of what can happen
-//   logbook, transitions          messages; events that a run passes, and changes of mode and contact
+//   logbook, transitions          messages; events that a run passes, changes of mode and contact, its end
 //   posed_problem                 what the solver asks
-//   motion, exchange              one communication step; model exchange
+//   motion, exchange, setting     one communication step; model exchange; what the caller sets, and initialization
 //   slopes, quotients, snapshot   derivatives of the variables, by difference quotients; the state as bytes
 //
 // Words for the way from what is asked for to what is in force:
 //   set                      the caller's value stands in the demand; a reading shows it (Pending)
 //   enforce                  the demand is in force from an instant on: take_over, then a jump of the carrier, contact
 //                            and mode
+//     prepare                at the start
 //     in_force_now           on a copy, for a reading
 //     apply_demand           at the next step of co-simulation
-//   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once where the
+//   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once where
+//   the
 //                            road has changed
 //   follow_event             what follows from an event is in force
 //     pass_event             for the run, counted and logged
@@ -48,6 +50,13 @@ struct Record {
   bool has_ended() const { return run.ended_by != Event::none; }
 };
 
+// Whether what is in force differs from the demand, by more than the rounding of its polynomials.
+bool differs_from_demand(const Record& record);
+// Whether something was set since the last step that makes a difference: a reading shows it, and a step puts it in
+// force.
+inline bool takes_effect(const Record& record) {
+  return record.run.pending == Pending::set && differs_from_demand(record);
+}
 // (y: the state at the instant reached) => what is in force for what follows, with what was set since the last step. y
 // changes where a slip begins or ends, or the carrier jumps.
 InForce in_force_now(const Record& record, double* y);
@@ -127,26 +136,5 @@ inline void update_state(Wheel& wheel) {
 }
 
 Instant instant_of(const Wheel& wheel);
-
-// The wheel is as new: start values, and no state. The orbit is kept for the next run with the same key.
-void reset(Wheel& wheel);
-// stop_time: infinite for none. tolerance <= 0: the default one.
-void set_experiment(Wheel& wheel, double start_time, double stop_time, double tolerance);
-// Sets a parameter, or an input or its derivative; in a run of model exchange a state too. Parameters are checked as a
-// whole by `prepare`.
-void set(Wheel& wheel, unsigned variable, double value, int order = 0);
-// The parameters are checked from here on.
-void begin_initialization(Wheel& wheel);
-// Computes the initial state from the present parameters. If there is none, false, with one message per fault.
-bool prepare(Record& record, const Reporter& reporter);
-// `prepare` where the parameters have changed since it was last done, so that reading several values logs their faults
-// once. False as long as they are faulty; true where no initial state is due.
-bool prepare_once(Wheel& wheel);
-// The run can begin; false if there is no initial state, with all faults, even if they were logged before.
-bool end_initialization(Wheel& wheel);
-// The run ends at the instant reached, by an event.
-void end_run(Wheel& wheel, Event event);
-// The caller ends the run.
-void close(Wheel& wheel);
 
 }  // namespace wheel

@@ -16,7 +16,7 @@ from wheelfmu.truth.scenes import AT_REST, GENERAL, KINDS
 from wheelfmu.truth.sliding import ROAD, THROWN
 
 PARAMETERS = len(variables("parameter"))
-EVENTS = 8  # names of `Event` in run.hpp, `none` included
+EVENTS = 8  # names of `Event` in in_force.hpp, `none` included
 MOST, COUNT = float(np.finfo(float).max), 2**53
 FORGED = "fmi2SetFMUstate: a number is out of its bounds."
 Bound = int | float | None
@@ -33,8 +33,9 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
     found += [("news", 1, 0, 2), ("slides", 1, 0, 1), ("phase", 1, 0, 12), ("ended by", 1, 0, EVENTS - 1)]
     found += [("s, mu_max, mu_slide", 3, 0.0, MOST), ("slope", 1, 0.0, pi / 2), ("slope_direction", 1, -1e12, 1e12)]
     found += [("law", 1, 0, 4), ("sigma", 1, -1.0, 1.0), ("contact", 1, 0, 1)]
-    found += [("origin", 1, -MOST, MOST), ("polynomials", 36, -MOST, MOST), ("t, last change", 2, -MOST, MOST)]
-    found += [("grip due", 1, 0.0, inf), ("y", 10, -MOST, MOST), ("below, observed", 2 * EVENTS, 0, 1)]
+    found += [("origin", 1, -MOST, MOST), ("polynomials", 36, -MOST, MOST), ("below", EVENTS, 0, 1)]
+    found += [("t, last change", 2, -MOST, MOST), ("grip due", 1, 0.0, inf), ("y", 10, -MOST, MOST)]
+    found += [("observed", EVENTS, 0, 1)]
     found += [("transitions", 1, 0, COUNT), ("counted", 5, 0, COUNT)]
     if phase != STEPPING:
         return found

@@ -5,6 +5,7 @@
 #include "law.hpp"
 #include "motion.hpp"
 #include "posed_problem.hpp"
+#include "setting.hpp"
 
 #ifdef _WIN32
 #define PUBLIC extern "C" __declspec(dllexport)

@@ -31,7 +31,7 @@ pytestmark = pytest.mark.xdist_group("recipes")  # one build for all
 
 # Another observed event: it depends on the place of the wheel, which is no symmetry of the unfolded motion.
 LINE = {
-    "fmu-src/wheel/run.hpp": ["crosses_line,\n"],
+    "fmu-src/wheel/in_force.hpp": ["crosses_line,\n"],
     "fmu-src/wheel/events.cpp": [
         """bool has_line(const Setup& setup, const InForce&) { return setup.keep_contact; }
 
@@ -53,7 +53,7 @@ PLACES = {
     "modelDescription.xml": ['    <ScalarVariable name="F_X"'],
     "fmu-src/wheel/setup.hpp": ["};\n\n// (parameters, tolerance, kind; whether the wheel can slide) => setup"],
     "fmu-src/wheel/setup.cpp": ["  return setup;\n}\n\nvoid scales_at"],
-    "fmu-src/wheel/run.hpp": ["  count\n};"],
+    "fmu-src/wheel/in_force.hpp": ["  count\n};"],
     "fmu-src/wheel/events.cpp": [
         "}  // namespace\n\nconstexpr EventRow event_rows[]",
         "};\n\nnamespace {\n\nconstexpr bool is_sound",

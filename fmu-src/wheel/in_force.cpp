@@ -1,5 +1,5 @@
 // The scene that follows from what is in force.
-#include "run.hpp"
+#include "in_force.hpp"
 
 #include <cmath>
 
@@ -31,7 +31,7 @@ void InForce::take_over(const Setup& setup, const Road& asked, double t, const P
 }
 
 void InForce::set_below(Event event, bool below_zero) {
-  below[static_cast<int>(event)] = below_zero;
+  below_[static_cast<int>(event)] = below_zero;
   scene_.ground = ground_of(*this);
 }
 
