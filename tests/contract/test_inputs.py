@@ -106,6 +106,17 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
     assert w.read(motion) != before
 
 
+@pytest.mark.parametrize("name", ["psi_dot_guide", "theta_dot_guide", "M_3", "s"])
+def test_a_value_that_is_set_and_taken_back_before_a_step_changes_no_bit_of_a_reading(wheel, name):
+    rates = {"psi_dot_guide": 1 / 3, "theta_dot_guide": 1 / 7}
+    w = wheel().start(guided=True, psi_dot_start=0.0, theta_dot_start=0.0, theta_start=1.3, s=0.02, **rates).to(0.1)
+    (before,), bits = w.get(name), w.bits()
+    w.put(**{name: before + 0.1})
+    beyond(float(w.bits() != bits), 0.5, "the partner: the value counts at once")
+    w.put(**{name: before})
+    assert w.bits() == bits
+
+
 @pytest.mark.parametrize("formulation", [2, 3])
 def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(wheel, formulation):
     """|M_3| <= s N holds it; 2 N m/s from zero lets it go at s N / 2 seconds."""
