@@ -8,7 +8,6 @@
 
 import os
 import platform
-import sys
 from argparse import Namespace
 from subprocess import STDOUT, check_output
 
@@ -30,41 +29,45 @@ def needs(given: Namespace) -> list[str]:
     return ["all" if given.which == "all" else "test"]
 
 
-def tests(*words: str, on: tuple[str, ...] = (), workers: int = 0, build: str = "release", **env: str) -> None:
-    """Tests of one group (xdist_group) run in turn in one process, and share what they prepare."""
-    count = str((os.cpu_count() or 1) + workers)
-    pytest = processes.python("pytest", "-q", "-n", count, "--dist", "loadgroup", *words)
-    built = {"WHEEL_BUILD": str(ROOT / "build" / build), **processes.SAFE}
-    processes.check(*on, *pytest, env=os.environ | built | env)
+def tests(workers: int, *words: str, on: tuple[str, ...] = (), build: str = "release", **variables: str) -> list[str]:
+    """Words that run tests. Those of a group (xdist_group) run in turn in one process, and share what they prepare."""
+    built = {"WHEEL_BUILD": str(ROOT / "build" / build), **processes.SAFE, **variables}
+    pytest = processes.python("pytest", "-q", "-n", workers, "--dist", "loadgroup", *words)
+    return ["env", *(f"{name}={value}" for name, value in built.items()), *on, *pytest]
+
+
+def under_sanitizers() -> list[str]:
+    """Words that run the contract under sanitizers, by one process."""
+    name = f"libclang_rt.asan-{platform.machine()}.so"
+    runtime = check_output(["clang-19", f"-print-file-name={name}"], text=True).strip()
+    memory = ["tests/contract", "tests/robustness/test_allocations.py"]
+    return tests(1, "-m", "not local", *memory, build="asan", ASAN_OPTIONS="detect_leaks=0", LD_PRELOAD=runtime)
 
 
 def main(given: Namespace) -> None:
+    cores = os.cpu_count() or 1
     if given.which != "all":
         processes.check(*RELEASE)
-        tests(*(CORE if given.which == "quick" else PRODUCT))
+        processes.check(*tests(cores, *(CORE if given.which == "quick" else PRODUCT)))
         print(f"The tests passed in {elapsed():.0f} s; ./scripts/test all runs every check.")
         return
     step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
     processes.side_by_side(RELEASE, *(processes.command(*words) for words in (("build", "asan"), ("tidy",), ("lint",))))
 
-    step("all tests, and beside them a minute of fuzzing")
-    fuzzed = ROOT / "build" / "fuzz.out"
-    with fuzzed.open("w") as file:
-        fuzzing = processes.start(*processes.command("fuzz", 60), stdout=file, stderr=STDOUT)
-        tests("tests", *[str(path.relative_to(ROOT)) for path in sorted((ROOT / "lab").glob("*/tests"))], workers=1)
-        code = fuzzing.wait()
-    print(fuzzed.read_text(errors="replace"), end="", file=sys.stderr if code else sys.stdout)
-    if code:
+    step("all tests; beside them, under sanitizers, a minute of fuzzing, then the contract")
+    lab = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "lab").glob("*/tests"))]
+    everything = processes.start(*tests(cores + 1, "tests", *lab))
+    with (ROOT / "build" / "sanitizers.out").open("w+", errors="replace") as file:  # printed when all tests have ended
+        beside = [processes.command("fuzz", 60), under_sanitizers()]
+        codes = [processes.status(*words, stdout=file, stderr=STDOUT) for words in beside]
+        codes.append(processes.ended(everything))
+        file.seek(0)
+        print("\nUnder sanitizers:", file.read(), sep="\n", flush=True)
+    if any(codes):
         raise processes.Failed(1)
 
     step("the tests of the core as on a processor without AVX2 and FMA")
-    tests(*CORE, on=("bash", "tests/other_machine"))
-
-    step("the contract under address and undefined-behaviour sanitizers")
-    name = f"libclang_rt.asan-{platform.machine()}.so"
-    runtime = check_output(["clang-19", f"-print-file-name={name}"], text=True).strip()
-    memory = ["tests/contract", "tests/robustness/test_allocations.py"]
-    tests("-m", "not local", *memory, build="asan", ASAN_OPTIONS="detect_leaks=0", LD_PRELOAD=runtime)
+    processes.check(*tests(cores, *CORE, on=("bash", "tests/other_machine")))
 
     step("done")
     print("All checks and tests passed.")
