@@ -46,7 +46,7 @@ class Solver {
   }
 
   // One internal step, or the rest of one that was resumed. After an event the owner
-  // restarts from there, resumes or ends.
+  // restarts from there, resumes or ends; until then the step is that event again.
   // A new step ends at `stop`, s, at the latest; one that would end within a few roundings of it ends there. CVODE
   // starts anew at a stop: the short step would leave a history over nodes that lie close together, which rounding
   // ruins.

@@ -21,8 +21,8 @@ inline int all_states(const InForce&) { return -1; }
 // A row by itself is enough for the solver and for snapshots. These rows are named elsewhere too:
 //   spin_changes   in exchange.cpp: a spin that the caller has set is not this event
 //   lies_flat      in exchange.cpp: its margin alone is asked for beyond flat; in logbook.cpp: a hint
-//   lost_contact   in run.cpp and exchange.cpp: it decides the side of the ground; in logbook.cpp: a hint
-//   jams           in motion.cpp, wheel.cpp and logbook.cpp: a start, or what was set, at which the wheel jams
+//   lost_contact   in in_force.cpp and exchange.cpp: it decides the side of the ground; in logbook.cpp: a hint
+//   jams           in motion.cpp, setting.cpp and logbook.cpp: a start, or what was set, at which the wheel jams
 struct EventRow {
   Event event;
   // Whether it can occur, given what is in force. An event after which the motion goes on may not change it for any

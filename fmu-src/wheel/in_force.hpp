@@ -7,8 +7,8 @@
 namespace wheel {
 
 // What can happen at an instant that is not known beforehand. These are the names of the rows of the table in
-// events.cpp. In co-simulation the later one in this list counts of two events at
-// the same instant; in model exchange all count.
+// events.cpp. In co-simulation the later one in this list counts of two events at the same instant; in model exchange
+// all count.
 enum class Event : int {
   none,
   changes_layer,  // omega_z enters or leaves the layer of a regularized law

@@ -72,6 +72,8 @@ bool varies(const Polynomials& inputs) {
   return bits << 1U != 0;
 }
 
+bool has_derivatives(const double (&c)[max_order + 1]) { return c[1] != 0 || c[2] != 0 || c[3] != 0; }
+
 bool is_guiding(const Polynomials& inputs) { return acts(inputs[guide_input]) || acts(inputs[guide_input + 1]); }
 
 double* load_entry(WheelLoad& load, int input) {
@@ -135,8 +137,7 @@ int Inputs::extremes(double t_lo, double t_hi, double* instants) const {
   return found;
 }
 
-// Between two extremes the polynomial passes zero at most once. Halves until
-//   no time lies between the ends.
+// Between two extremes the polynomial passes zero at most once. Halves until no time lies between the ends.
 double Inputs::corner(double t, double until) const {
   const auto brakes = [&](double at) { return value_at(c[brake_input], at - origin) > 0; };
   double ends[most_extremes + 1];

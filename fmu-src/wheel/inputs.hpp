@@ -17,6 +17,9 @@ inline constexpr double factorial[] = {1, 1, 2, 6};
 // c[i][k] = derivative of order k at the origin, divided by k!: input(t) = c[i][0] + c[i][1] (t - origin) + ...
 using Polynomials = double[inputs_count][max_order + 1];
 
+// (polynomial) => whether it depends on time
+bool has_derivatives(const double (&c)[max_order + 1]);
+
 // (inputs) => whether one depends on time
 bool varies(const Polynomials& inputs);
 

@@ -12,7 +12,8 @@
 //   release           mode                            where resistance and brake cannot hold the wheel
 //   begin_slide       contact, mode, slip             by decide_contact, and where the grip is lost
 // Which observed events lie below zero, and with it whether the ground pulls, is written by InForce::set_below
-// (run.hpp), at events and where a run leaves its orbit. Nothing here counts or logs: transitions.hpp does.
+// (in_force.hpp): at events, after a motion on an orbit, and where a saved state is read. Nothing here counts or logs:
+// transitions.hpp does.
 #pragma once
 
 #include "constant.hpp"

@@ -205,8 +205,8 @@ void arrive(Wheel& w, double t) {
   move_to(w, t);
   const Inputs& inputs = w.run.in_force.inputs;
   if (!inputs.varies) return;
-  w.demand.end_slopes(inputs, t);
-  w.run.pending = Pending::ended_slopes;
+  w.demand.end_derivatives(inputs, t);
+  w.run.pending = Pending::ended_derivatives;
 }
 
 // A step has failed: the state is that before the step, and stays so.
@@ -243,7 +243,7 @@ Excess excess_of(const Wheel& w, double h) {
   if (!may_vary || !varies(w.demand.inputs)) return {};
   for (unsigned i = 0; i < inputs_count; ++i) {
     const auto& c = w.demand.inputs[i];
-    if (c[1] == 0 && c[2] == 0 && c[3] == 0) continue;
+    if (!has_derivatives(c)) continue;
     const Span span = span_of(c, h);
     const unsigned input = first_input + i;
     if (const Limit limit = broken_limit(input, span.largest); limit.relation) return {input, span.largest, limit};

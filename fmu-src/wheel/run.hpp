@@ -41,9 +41,9 @@ constexpr bool has_state(Phase p) { return p >= Phase::initial && p != Phase::wi
 
 // How the demand differs from what is in force. For example, the caller sets F_X = 1 N with the derivative 10 N/s
 // (`set`: a reading shows it at once), and steps by 0.1 s (`nothing` within the step). At its end the demand has F_X
-// = 2 N without a derivative (`ended_slopes`), while a reading still has the slope of the step. If the caller sets F_X
-// = 2 N once more, the slope has ended (`set`).
-enum class Pending : unsigned char { nothing, ended_slopes, set };
+// = 2 N without a derivative (`ended_derivatives`), while a reading still has that of the step. Whatever is set then,
+// be it the mu_max that it has, is what follows, and the derivative of F_X has ended for a reading too (`set`).
+enum class Pending : unsigned char { nothing, ended_derivatives, set };
 
 class Run {
  public:
@@ -56,7 +56,7 @@ class Run {
   double last_change = 0;  // s, clock of the run: when an input or a tunable parameter last changed
   double grip_due = 0;     // s, clock of the run: from when on mu_required is looked at; infinite after its warning
   bool logged[event_count] = {};  // of each event that is observed: it has occurred, and was logged
-  long long transitions = 0;      // between held and rolling to either side, and between rolling and sliding
+  long long transitions = 0;      // see transitions.hpp
   solver::Counters counted = {};  // all but those of the solver at work
 
   // The state at t. A communication step along a motion that is known already moves t alone, and the state lags behind.

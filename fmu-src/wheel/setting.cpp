@@ -62,7 +62,8 @@ void set(Wheel& w, unsigned variable, double value, int order) {
   if (run.phase == Phase::faulty || run.phase == Phase::initial) run.phase = Phase::initializing;
   double& asked = w.demand.value(variable, order);
   const double taken = value / factorial[order];
-  if (asked == taken && run.pending != Pending::ended_slopes) return;  // a value that is set once more ends its slope
+  if (asked == taken && run.pending != Pending::ended_derivatives)
+    return;  // whatever is set ends those of the last step
   asked = taken;
   run.pending = Pending::set;
   if (w.demand.kind == Kind::model_exchange && is_running(run.phase)) act_at_once(w);

@@ -77,7 +77,7 @@ void choose_equations(Setup& setup, const Demand& demand, bool can_slide) {
 
 }  // namespace
 
-void Demand::end_slopes(const Inputs& arrived, double t) {
+void Demand::end_derivatives(const Inputs& arrived, double t) {
   for (int i = 0; i < inputs_count; ++i) {
     std::fill_n(inputs[i] + 1, max_order, 0.0);
     inputs[i][0] = arrived.value_of(i, t);

@@ -25,7 +25,7 @@ static_assert(max_states == WHEEL_SLIDING_STATES);
 enum class Kind : int { co_simulation, model_exchange };
 
 // Parameters and tolerance make the setup. Inputs, their derivatives and the road may be set again later. They are in
-// force from the next step on, in model exchange at once. Inputs have two writers: the caller, and `end_slopes`.
+// force from the next step on, in model exchange at once. Inputs have two writers: the caller, and `end_derivatives`.
 struct Demand {
   double parameters[first_input];  // in the order of the variables; the road is the one asked for
   Polynomials inputs = {};         // from the instant at which they take effect
@@ -34,7 +34,7 @@ struct Demand {
 
   // At the end of a step, at t, s, clock of the run: a derivative counts for one step, and every input stays where it
   // arrived.
-  void end_slopes(const Inputs& arrived, double t);
+  void end_derivatives(const Inputs& arrived, double t);
 
   // The value of a stored variable, or for k > 0 a coefficient of an input's polynomial.
   double& value(unsigned v, int k = 0) { return v < first_input ? parameters[v] : inputs[v - first_input][k]; }

@@ -193,10 +193,9 @@ void take_along_motion(const Wheel& w, Slopes& slopes) {
   WheelFriction& mode = start.scene.friction;
   double tau_rate = 0;
   if (mode.kind == WHEEL_REGULARIZED) {
-    const double s = start.scene.ground == WHEEL_GROUND_PULLS ? 0 : start.scene.wheel.s;
     const double omega_z = start.y[WHEEL_OMEGA_3], steepness = std::cosh(omega_z / mode.omega_s);
     const double kappa_dot = rates.y_dot[WHEEL_OMEGA_3] / mode.omega_s / steepness / steepness;
-    tau_rate = -kappa_dot * (s * rates.N + start.scene.load.brake);
+    tau_rate = -kappa_dot * wheel_axle_capacity(start.scene.wheel.s, rates.N, start.scene.load.brake);
     rate.M[2] += tau_rate;
     mode = {WHEEL_ROLLING, wheel_kappa(&mode, omega_z), 0};
   }

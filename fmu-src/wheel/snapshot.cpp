@@ -26,10 +26,11 @@ struct Header {
   std::uint64_t mark, size, checksum;
 };
 
-// The three functions below visit all that the caller has set, and all of the run that does not follow from it. A new
-// member of Demand, InForce or Run belongs here too, or `complete` computes it: the structured bindings and the sizes
-// remind of it, although Run has room for a few bytes more. The bounds keep forged numbers harmless, not meaningful.
-static_assert(alignof(Run) != 8 || (sizeof(Run) == 800 && sizeof(InForce) == 552));
+// The functions `visit` pass over all that the caller has set, and all of the run that does not follow from it. A new
+// member of Demand, InForce or Run belongs here too, or `complete` computes it: structured bindings and the size of
+// InForce remind of it, in Run only this sentence. The bounds keep forged numbers harmless, not meaningful.
+static_assert(sizeof(InForce) == sizeof(Road) + sizeof(Inputs) + (event_count + 7) / 8 * 8 + sizeof(WheelScene) ||
+              alignof(InForce) != 8);
 
 void visit(support::Archive& archive, Demand& demand) {
   auto& [parameters, inputs, start_time, stop_time, tolerance, kind] = demand;  // the kind is in the mark

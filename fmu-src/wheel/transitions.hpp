@@ -8,7 +8,7 @@ namespace wheel {
 // The run stands at an event that does not end it: what follows is in force, counted and logged.
 solver::Consequence pass_event(Wheel& wheel, Event event);
 // Counts and logs what has changed since `before`, by an event or by what was set: between held, positive and negative
-// spin, and between rolling and sliding.
+// spin; between grip and slide; from one slide to another that starts anew.
 void note_changes(Wheel& wheel, const InForce& before, Event by = Event::none);
 
 // The run ends at the instant reached, by an event.

@@ -22,8 +22,7 @@
 //     prepare                at the start
 //     in_force_now           on a copy, for a reading
 //     apply_demand           at the next step of co-simulation
-//   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once where
-//   the
+//   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once if the
 //                            road has changed
 //   follow_event             what follows from an event is in force
 //     pass_event             for the run, counted and logged

@@ -37,7 +37,7 @@ LINE = {
 
 double short_of_line(const Setup& setup, const InForce&, double, const double* y) {
   WheelKinematics now;
-  setup.formulation->kinematics(&setup.scene.wheel, y, &now);
+  setup.rolling_equations->kinematics(&setup.wheel, y, &now);
   return (setup.Y_O.whole(now.Y_O) + 0.1) / setup.length;
 }
 """,
@@ -56,7 +56,7 @@ PLACES = {
     "fmu-src/wheel/in_force.hpp": ["  count\n};"],
     "fmu-src/wheel/events.cpp": [
         "}  // namespace\n\nconstexpr EventRow event_rows[]",
-        "};\n\nnamespace {\n\nconstexpr bool is_sound",
+        "};\n\nnamespace {\n\n// A row that does not always end",
     ],
 }
 OF_PARAMETERS = {
