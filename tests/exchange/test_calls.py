@@ -210,6 +210,18 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         assert wheel.setTime(0.2) == ERROR
 
 
+@pytest.mark.parametrize(("beyond_flat", "flat"), [(-0.1, 0.0), (3.3, np.pi)])
+def test_beyond_flat_every_other_indicator_is_that_of_the_wheel_that_lies_flat(library, beyond_flat, flat) -> None:
+    """A search between a state on either side would else follow forces of a wheel under the ground."""
+    with exchange(library, s=0.03, mu_max=0.3) as wheel:
+        found = []
+        for theta in (beyond_flat, flat, abs(flat - 0.1)):
+            wheel.place(0.3, np.where(ODD == 1.1, theta, ODD))
+            found.append([wheel.indicator(event) for event in INDICATORS if event != "lies_flat"])
+    assert found[0] == found[1]
+    beyond(absolute_error(found[2], found[1]), 1e-4, "indicators of a wheel a tenth of a radian above the ground")
+
+
 @pytest.mark.parametrize(
     ("theta", "F_Z", "ending"),
     [(1.2, -9.0, "needs a friction"), (1.2, 500.0, "lifted off"), (0.0, 500.0, "lies flat"), (0.0, -9.0, "lies flat")],

@@ -395,6 +395,18 @@ def test_a_held_wheel_stays_held_while_its_carrier_swings(
             within(max(taus), 0.1 * capacity, "largest moment about the axle, N m")
 
 
+@pytest.mark.parametrize("M_brake", [200.0, 50.0])
+def test_a_jump_that_relieves_the_ground_takes_nothing_from_the_brake_that_holds_the_wheel(library, M_brake) -> None:
+    """Over a millisecond 50 N m take up 0.05 N m s, which is more than the jump gives the wheel."""
+    lean = {"guided": True, "theta_start": 1.2, "phi_dot_start": 0.0, "s": 0.1}
+    spins = []
+    for brake in (M_brake, 2.0):
+        w = library.wheel().start(**lean).put(M_brake=brake).by(0.004)
+        spins += w.put(psi_dot_guide=0.2, theta_dot_guide=-3.0).get("omega_z")
+    assert spins[0] == 0.0
+    beyond(spins[1], 5e-3, "spin after the same jump under a brake of 2 N m, rad/s")
+
+
 def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
     assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
     start, (_, theta_dot), _ = JUMPS["friction stops it"]
