@@ -48,7 +48,7 @@ def test_the_forces_read_where_a_slide_begins_under_a_brake_are_those_that_follo
 
 
 def test_the_law_of_a_slide_that_begins_without_spin_is_searched_under_the_exact_law_alone(wheel) -> None:
-    """friction_mode, the sign of omega_z or the spin that friction allows, is known there before the first step."""
+    """Under it a wheel without spin is held or let go; else friction_mode is 0, the sign of its spin."""
     pushed = {**UPRIGHT, "mu_max": 0.06, "mu_slide": 0.05, "F_X": 60.0, "F_Y": 70.0, "M_3": -9.0}
     regularized = {"friction_law": 2, "omega_s": 0.1}
     laws = (({}, 0), ({"s": 0.03, **regularized}, 0), ({"M_brake": 0.1, **regularized}, 0), ({"s": 0.03}, -1))

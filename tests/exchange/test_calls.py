@@ -1,9 +1,10 @@
 """Model exchange, call by call: states to the bit, derivatives, snapshots, endings, refusals."""
 
-from ctypes import c_double
+from ctypes import byref, c_double, c_int, sizeof
 
 import numpy as np
 import pytest
+from fmpy.fmi2 import fmi2EventInfo
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
@@ -282,6 +283,25 @@ def test_a_wheel_off_the_ground_at_the_start_is_taken_where_the_ground_may_pull(
         assert wheel.decide().valuesOfContinuousStatesChanged and "the road pulls" in wheel.sentences[-1]
 
 
+def test_what_a_call_answers_replaces_whatever_its_record_and_its_flags_held(library: Library) -> None:
+    with at_odd(library) as wheel:
+        enter, terminate = (c_int(7) for _ in range(2))
+        assert wheel.ask("CompletedIntegratorStep", 1, byref(enter), byref(terminate)) == OK
+        assert (enter.value, terminate.value) == (0, 0)
+        assert wheel.enterEventMode() == OK
+        info = fmi2EventInfo.from_buffer_copy(b"\1" * sizeof(fmi2EventInfo))
+        assert wheel.ask("NewDiscreteStates", byref(info)) == OK
+        assert bytes(info) == bytes(fmi2EventInfo())
+
+
+def test_where_the_start_has_failed_there_are_no_states_to_read(library: Library) -> None:
+    with loaded(library).new() as wheel:
+        assert wheel.set(theta_start=-1.0) == OK and wheel.initialise() == ERROR
+        for what in ("ContinuousStates", "NominalsOfContinuousStates", "Derivatives"):
+            values = (c_double * 8)(*ODD)
+            assert wheel.ask(f"Get{what}", values, 8) == DISCARD and list(values) == ODD.tolist()
+
+
 def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:
     with at_odd(library) as wheel:
         assert wheel.ask("SetContinuousStates", [0] * 7, 7) == ERROR
@@ -491,3 +511,12 @@ def test_a_brake_that_is_not_in_use_has_no_moment_until_an_event_gives_it_a_law(
         assert not wheel.wants_event() and wheel.put(M_brake=1.0).wants_event()
         wheel.event()
         assert wheel.jacobian(["tau_brake"], ["M_brake"]) == pytest.approx(1)  # omega_z < 0
+
+
+def test_until_an_event_decides_the_moment_of_a_brake_let_off_is_that_of_one_that_hardly_presses(library) -> None:
+    """Without rolling resistance all that holds the wheel is the brake's, however weak it is."""
+    with exchange(library, M_brake=50.0, M_3=30.0, **AT_REST) as wheel:
+        for brake in (50.0, 1e-9, 0.0):
+            assert wheel.put(M_brake=brake).get("tau", "tau_brake") == pytest.approx([-30.0, -30.0])
+        wheel.event()
+        assert wheel.get("tau", "tau_brake") == [0.0, 0.0]

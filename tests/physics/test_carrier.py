@@ -415,6 +415,16 @@ def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Li
     beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
 
 
+@pytest.mark.parametrize("slip", [1.0, -1.0])
+def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_leaves_its_side(library, slip) -> None:
+    """Across its heading, so that the road hardly turns it: the pressure of the swing takes some 0.07 rad/s."""
+    lean = {"guided": True, "theta_start": 1.2, "s": 0.03, "mu_max": 0.3, "mu_slide": 0.25, "slip_y_start": slip}
+    for spin, mode in ((-0.01, 0), (0.02, 0), (-0.1, -1)):
+        w = library.wheel().start(**lean, phi_dot_start=spin).put(theta_dot_guide=2.0)
+        omega_z, *modes = w.get("omega_z", "friction_mode", "contact_mode")
+        assert modes == [mode, 1] and (omega_z == 0.0) == (mode == 0)
+
+
 def test_rates_that_are_held_never_break_the_grip_and_their_derivatives_do(library: Library) -> None:
     """Leaned by 20 rad/s2, which needs a friction coefficient of 0.7, in steps of 0.1 to 10 ms."""
     for h in (1e-4, 1e-3, 1e-2):

@@ -214,3 +214,28 @@ def test_a_value_near_zero_that_the_dense_output_alone_comes_across_costs_nothin
 
     assert evaluations(1 / 10, 1 / 5, 7 / 9) == evaluations()
     beyond(evaluations(1 / 4), evaluations(), "evaluations where a stage comes near zero")
+
+
+@pytest.mark.parametrize("engine", ["runge_kutta", "collocation"])
+def test_behind_an_event_that_changes_nothing_the_rest_of_the_step_is_searched(solver, engine):
+    """The value that is known inside the step lies before the event, and shows nothing of what follows."""
+    side = [1]
+    one = solver(
+        engine, "clock", each_step=lambda t, y: side[0] * (0.7 - t),
+        later_listed=lambda t, y: min(1, 50 * abs(t - 0.85) - 1),
+    )  # fmt: skip
+    for instant, fallen in ((0.7, EACH_STEP), (0.83, LATER_LISTED)):
+        assert (one.run(1.0), one.now.fallen) == (EVENT, fallen)
+        within(absolute_error(one.now.known, instant), 64 * EPSILON, "instant of the fall, s")
+        side[0] = -1
+        one.resume()
+    assert one.now.begin == 0
+
+
+def test_each_question_is_counted_at_starts_and_in_searches_too(solver, method):
+    asked, events = [], 0
+    one = solver(method, each_step=lambda t, y: asked.append(t) or 0.9 - y[1])
+    while one.run(20.0) == EVENT:
+        events += 1
+        one.restart(one.now.known + 2, harmonic(one.now.known + 2))
+    assert events > 2 and one.now.roots == len(asked)
