@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -471,3 +472,14 @@ def test_loads_that_decide_how_a_slip_begins_do_so_on_a_slippery_road(wheel, mu)
     w = wheel().initializing(mu_max=mu, mu_slide=0.9 * mu, **UPRIGHT).put(F_Y=3e3 * mu, M_3=5 * mu)
     assert w.get("contact_mode") == [1]
     within(furthest(w, mu), 1e-6, "derivatives off the quotients, relative")
+
+
+def test_derivatives_replace_what_their_array_held(wheel):
+    w = wheel().start(F_X=5.0, M_3=1.0)
+    knowns, seeds = w.refer("F_X", "M_3"), [2.0, -3.0]
+    found = []
+    for held in (0.0, 7.0, np.nan):
+        values = (c_double * 2)(held, held)
+        assert w.ask("GetDirectionalDerivative", w.refer("theta_ddot", "lambda_1"), 2, knowns, 2, seeds, values) == OK
+        found.append(list(values))
+    assert found[0] == found[1] == found[2] and all(found[0])

@@ -230,10 +230,13 @@ PASSED: list[tuple[str, list[float], str]] = [
 ]
 
 
+@pytest.mark.parametrize("ago", [0.0, 0.1])
 @pytest.mark.parametrize(("name", "polynomial", "text"), PASSED)
-def test_a_step_in_which_an_input_would_leave_its_bounds_is_refused_and_leaves_the_state(wheel, name, polynomial, text):
-    """At its end or on the way; a brake that falls to zero stays there."""
-    w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5).give({name: tuple(polynomial)})
+def test_a_step_in_which_an_input_would_leave_its_bounds_is_refused_and_leaves_the_state(
+    wheel, name, polynomial, text, ago
+):
+    """At its end or on the way; a brake that falls to zero stays there. The run has begun so long ago."""
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=1.5).by(ago).give({name: tuple(polynomial)})
     before = w.serialized()
     status = w.step(1.0)
     if not text:  # where a force is too large for a solver, that is another message

@@ -47,6 +47,19 @@ def test_the_forces_read_where_a_slide_begins_under_a_brake_are_those_that_follo
     assert modes == {(0, -1), (1, -1), (1, 0)}
 
 
+def test_the_law_of_a_slide_that_begins_without_spin_is_searched_under_the_exact_law_alone(wheel) -> None:
+    """Under it a wheel without spin is held or let go; else friction_mode is 0, the sign of its spin."""
+    pushed = {**UPRIGHT, "mu_max": 0.06, "mu_slide": 0.05, "F_X": 60.0, "F_Y": 70.0, "M_3": -9.0}
+    regularized = {"friction_law": 2, "omega_s": 0.1}
+    laws = (({}, 0), ({"s": 0.03, **regularized}, 0), ({"M_brake": 0.1, **regularized}, 0), ({"s": 0.03}, -1))
+    for law, mode in laws:
+        w = wheel().initializing(**pushed, **law)
+        assert w.get("friction_mode", "contact_mode") == [mode, 1]
+        assert w.exitInitializationMode() == OK
+        assert w.by(1e-3).get("n_events", "n_restarts") == [1, 0]
+        w.close()
+
+
 @pytest.mark.local  # sanitizers keep what is freed
 def test_a_state_of_a_wheel_that_rolls_and_one_of_a_wheel_that_slides_take_each_others_place(wheel) -> None:
     """They differ in size; 20,000 alternations take no more memory than the first ones."""

@@ -39,6 +39,24 @@ def test_steps_of_no_length_of_a_nanosecond_and_of_an_hour_change_no_bit(wheel):
     assert end(3600.0) == end(*np.arange(1.0, 3601.0)) != once
 
 
+@pytest.mark.parametrize("values", [{}, {"s": 0.03}], ids=["free", "friction"])
+def test_a_step_of_no_length_at_the_start_sets_nothing_in_motion(wheel, values):
+    w = wheel().start(**values)
+    before, state = w.get(*COUNTERS), w.serialized()
+    assert w.by(0.0).get(*COUNTERS) == before and w.serialized() == state
+    assert w.by(1e-3).get(*COUNTERS) != before  # the partner
+
+
+def test_a_tolerance_and_a_stop_time_that_are_not_defined_count_for_nothing_whatever_they_are(wheel):
+    ends = []
+    for defined, tolerance, stop in ((0, 0.0, 0.0), (0, 1e-3, 0.5), (0, -1.0, np.nan), (1, 1e-3, 2.0)):
+        w = wheel()
+        assert w.ask("SetupExperiment", defined, tolerance, 0.0, defined, stop) == OK
+        assert w.enterInitializationMode() == w.exitInitializationMode() == OK
+        ends.append(w.to(1.0).bits())
+    assert ends[0] == ends[1] == ends[2] != ends[3]
+
+
 @pytest.mark.parametrize("values", [{}, {"s": 0.02}, {"formulation": 3}], ids=["free", "friction", "multibody"])
 def test_what_is_read_between_two_changes_is_seen_in_no_counter(wheel, values):
     """Two changes 0.02 s apart: the step after the second is 0.02 s long, and a fine grid reads inside it."""

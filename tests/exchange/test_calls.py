@@ -1,9 +1,10 @@
 """Model exchange, call by call: states to the bit, derivatives, snapshots, endings, refusals."""
 
-from ctypes import c_double
+from ctypes import byref, c_double, c_int, sizeof
 
 import numpy as np
 import pytest
+from fmpy.fmi2 import fmi2EventInfo
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.bounds import EPSILON, absolute_error, beyond, within
@@ -210,6 +211,18 @@ def test_trial_states_beyond_flat_have_finite_derivatives_and_an_event(library: 
         assert wheel.setTime(0.2) == ERROR
 
 
+@pytest.mark.parametrize(("beyond_flat", "flat"), [(-0.1, 0.0), (3.3, np.pi)])
+def test_beyond_flat_every_other_indicator_is_that_of_the_wheel_that_lies_flat(library, beyond_flat, flat) -> None:
+    """A search between a state on either side would else follow forces of a wheel under the ground."""
+    with exchange(library, s=0.03, mu_max=0.3) as wheel:
+        found = []
+        for theta in (beyond_flat, flat, abs(flat - 0.1)):
+            wheel.place(0.3, np.where(ODD == 1.1, theta, ODD))
+            found.append([wheel.indicator(event) for event in INDICATORS if event != "lies_flat"])
+    assert found[0] == found[1]
+    beyond(absolute_error(found[2], found[1]), 1e-4, "indicators of a wheel a tenth of a radian above the ground")
+
+
 @pytest.mark.parametrize(
     ("theta", "F_Z", "ending"),
     [(1.2, -9.0, "needs a friction"), (1.2, 500.0, "lifted off"), (0.0, 500.0, "lies flat"), (0.0, -9.0, "lies flat")],
@@ -268,6 +281,25 @@ def test_a_wheel_off_the_ground_at_the_start_is_taken_where_the_ground_may_pull(
         wheel.start(keep_contact=True, **LIFTED)
         assert wheel.get("lambda_3") == pytest.approx([-303.8])
         assert wheel.decide().valuesOfContinuousStatesChanged and "the road pulls" in wheel.sentences[-1]
+
+
+def test_what_a_call_answers_replaces_whatever_its_record_and_its_flags_held(library: Library) -> None:
+    with at_odd(library) as wheel:
+        enter, terminate = (c_int(7) for _ in range(2))
+        assert wheel.ask("CompletedIntegratorStep", 1, byref(enter), byref(terminate)) == OK
+        assert (enter.value, terminate.value) == (0, 0)
+        assert wheel.enterEventMode() == OK
+        info = fmi2EventInfo.from_buffer_copy(b"\1" * sizeof(fmi2EventInfo))
+        assert wheel.ask("NewDiscreteStates", byref(info)) == OK
+        assert bytes(info) == bytes(fmi2EventInfo())
+
+
+def test_where_the_start_has_failed_there_are_no_states_to_read(library: Library) -> None:
+    with loaded(library).new() as wheel:
+        assert wheel.set(theta_start=-1.0) == OK and wheel.initialise() == ERROR
+        for what in ("ContinuousStates", "NominalsOfContinuousStates", "Derivatives"):
+            values = (c_double * 8)(*ODD)
+            assert wheel.ask(f"Get{what}", values, 8) == DISCARD and list(values) == ODD.tolist()
 
 
 def test_wrong_arrays_and_numbers_are_refused_and_change_nothing(library: Library) -> None:
@@ -494,3 +526,12 @@ def test_a_brake_that_is_not_in_use_has_no_moment_until_an_event_gives_it_a_law(
         assert not wheel.wants_event() and wheel.put(M_brake=1.0).wants_event()
         wheel.event()
         assert wheel.jacobian(["tau_brake"], ["M_brake"]) == pytest.approx(1)  # omega_z < 0
+
+
+def test_until_an_event_decides_the_moment_of_a_brake_let_off_is_that_of_one_that_hardly_presses(library) -> None:
+    """Without rolling resistance all that holds the wheel is the brake's, however weak it is."""
+    with exchange(library, M_brake=50.0, M_3=30.0, **AT_REST) as wheel:
+        for brake in (50.0, 1e-9, 0.0):
+            assert wheel.put(M_brake=brake).get("tau", "tau_brake") == pytest.approx([-30.0, -30.0])
+        wheel.event()
+        assert wheel.get("tau", "tau_brake") == [0.0, 0.0]

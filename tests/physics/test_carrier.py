@@ -395,12 +395,34 @@ def test_a_held_wheel_stays_held_while_its_carrier_swings(
             within(max(taus), 0.1 * capacity, "largest moment about the axle, N m")
 
 
+@pytest.mark.parametrize("M_brake", [200.0, 50.0])
+def test_a_jump_that_relieves_the_ground_takes_nothing_from_the_brake_that_holds_the_wheel(library, M_brake) -> None:
+    """Over a millisecond 50 N m take up 0.05 N m s, which is more than the jump gives the wheel."""
+    lean = {"guided": True, "theta_start": 1.2, "phi_dot_start": 0.0, "s": 0.1}
+    spins = []
+    for brake in (M_brake, 2.0):
+        w = library.wheel().start(**lean).put(M_brake=brake).by(0.004)
+        spins += w.put(psi_dot_guide=0.2, theta_dot_guide=-3.0).get("omega_z")
+    assert spins[0] == 0.0
+    beyond(spins[1], 5e-3, "spin after the same jump under a brake of 2 N m, rad/s")
+
+
 def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
     assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
     start, (_, theta_dot), _ = JUMPS["friction stops it"]
     lift = M * R_0 * cos(start["theta_start"]) * theta_dot  # N s
     whole = start["s"] * lift / (J_Z + M * (R_0 + TUBE * sin(start["theta_start"])) ** 2)
     beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
+
+
+@pytest.mark.parametrize("slip", [1.0, -1.0])
+def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_leaves_its_side(library, slip) -> None:
+    """Across its heading, so that the road hardly turns it: the pressure of the swing takes some 0.07 rad/s."""
+    lean = {"guided": True, "theta_start": 1.2, "s": 0.03, "mu_max": 0.3, "mu_slide": 0.25, "slip_y_start": slip}
+    for spin, mode in ((-0.01, 0), (0.02, 0), (-0.1, -1)):
+        w = library.wheel().start(**lean, phi_dot_start=spin).put(theta_dot_guide=2.0)
+        omega_z, *modes = w.get("omega_z", "friction_mode", "contact_mode")
+        assert modes == [mode, 1] and (omega_z == 0.0) == (mode == 0)
 
 
 def test_rates_that_are_held_never_break_the_grip_and_their_derivatives_do(library: Library) -> None:

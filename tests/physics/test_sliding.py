@@ -250,6 +250,18 @@ def test_a_start_in_which_the_wheel_jams_is_rejected_and_has_no_forces(library: 
     assert (status, said) == (OK, "") and N > 0
 
 
+@pytest.mark.parametrize("theta", [1.2, 2.0])
+def test_a_wheel_that_full_grip_alone_would_hold_down_slides_off_a_road_that_has_less(library: Library, theta) -> None:
+    """Without friction N < 0; the force that would keep it needs mu_max = 0.58 or 0.65."""
+    light = {"J_x": 0.06, "J_y": 0.06, "J_z": 0.06, "psi_dot_start": 0.0, "phi_dot_start": 0.0, "theta_start": theta}
+    for mu, mode in ((0.3, SLIDING), (0.7, GRIPS)):
+        with library.wheel() as wheel:
+            wheel.start(**light, F_Z=60.0, M_1=10.0 * np.sign(theta - pi / 2), mu_max=mu, mu_slide=mu)
+            N, *found = wheel.get("lambda_3", "contact_mode")
+            assert found == [mode] and (N > 0) == (mode == GRIPS)
+            assert wheel.step(1e-3) == (OK if mode == GRIPS else DISCARD)
+
+
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
 def test_a_jam_is_the_same_at_every_tolerance(library: Library, tolerance: float, formulation: int) -> None:
     """Friction of 4 against a fast slip across: the normal force grows as the inverse root of the time left."""

@@ -81,7 +81,7 @@ def test_a_parked_wheel_stays_while_the_road_tilts_and_rolls_where_it_tilts_too_
 @pytest.mark.parametrize("seed", range(8))
 def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Library, seed: int) -> None:
     """Beside a wheel that starts there; the energy jumps by the weight's turn about the origin."""
-    values = {**random_scene(np.random.default_rng(seed)).start, "slope": 0.3}
+    values = {**random_scene(np.random.default_rng(seed)).start, "slope": 0.3, "X_O_start": 3.0, "Y_O_start": -2.0}
     names = ("X_O", "Y_O", "theta", "psi", "phi", "omega_z")
     with library.wheel() as wheel, library.wheel() as fresh:
         wheel.start(tolerance=1e-11, **values).to(0.4)
@@ -90,8 +90,8 @@ def test_a_road_that_changes_is_the_next_road_from_the_state_reached(library: Li
         E, place = wheel.get("E")[0], np.array(wheel.get("X_O", "Y_O", "Z_O"))
         change = gravity(0.6, -2.0) - gravity(values["slope"], values["slope_direction"])
         jump = wheel.put(slope=0.6, slope_direction=-2.0).get("E")[0] - E
-        within(abs(jump + 20.0 * change @ place) / E, 32 * EPSILON, "jump of the energy less the weight's, relative")
-        beyond(abs(jump) / E, 1e-4, "jump of the energy, relative")
+        within(abs((jump + 20.0 * change @ place) / E), 32 * EPSILON, "jump of the energy less the weight's, relative")
+        beyond(abs(jump / E), 1e-4, "jump of the energy, relative")
         wheel.to(0.8)
         fresh.start(tolerance=1e-11, **values | there | {"slope": 0.6, "slope_direction": -2.0}).to(0.4)
         within(absolute_error(wheel.get(*names), fresh.get(*names)), 1e-10, "state, m, rad, rad/s")

@@ -132,6 +132,7 @@ PUBLIC void probe_read(const Probe* probe, double t, double* y) { probe->solver.
 PUBLIC const char* probe_failure(const Probe* probe) { return probe->solver.failure(); }
 PUBLIC void probe_limit_first_step(Probe* probe, double dt) { probe->solver.limit_first_step(dt); }
 
+PUBLIC void probe_resume(Probe* probe) { probe->solver.resume(); }
 PUBLIC void probe_restart(Probe* probe, double t, const double* y) {
   const Setting& s = probe->setting;
   (void)probe->solver.restart(problem_of(probe), s.method, t, y);

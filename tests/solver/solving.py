@@ -64,6 +64,10 @@ class Solver:
     def limit_first_step(self, dt):
         self.library.probe_limit_first_step(self.probe, c_double(dt))
 
+    def resume(self):
+        """After an event that changes nothing."""
+        self.library.probe_resume(self.probe)
+
     def restart(self, t, y):
         self.library.probe_restart(self.probe, c_double(t), (c_double * STATES)(*y))
 

@@ -1,9 +1,10 @@
 """Events and endings of the solver alone: every fall through zero is found, dips included, and none is invented."""
 
+from itertools import pairwise
 from math import acos, asin, pi, sin, sqrt
 
 import pytest
-from support.bounds import EPSILON, absolute_error, within
+from support.bounds import EPSILON, absolute_error, beyond, within
 
 from .solving import EACH_STEP, EVENT, LATER_LISTED, QUICK, STEPPED, harmonic
 
@@ -158,3 +159,83 @@ def test_of_two_falls_before_an_extreme_the_first_counts(solver, method, falls):
     assert one.run(1.0) == EVENT
     within(absolute_error(one.now.known, 0.3), 64 * EPSILON, "instant of the fall, s")
     assert one.now.fallen == 1 + falls.index(0.3)
+
+
+def test_a_dip_about_the_middle_of_each_step_is_found_where_collocation_takes_over_from_dop853(solver):
+    """A value inside the step is known of DOP853 alone, and would hide the dip from collocation."""
+    start = [0.0, 12e-4, 1.0, 0.0]  # twelve widths from zero; it rests at 1e-3 s
+    one, steps = solver("runge_kutta", "steep", longest_step=0.5), []
+    one.restart(0.0, start)
+    while one.now.known < 0.5:
+        assert one.step() == STEPPED
+        steps.append(one.now[:2])
+    for begin, end in (step for step in steps if step[0] > 1e-3):
+        middle, half = 0.5 * (begin + end), 0.02 * (end - begin)
+
+        def dips(t, y, middle=middle, half=half):
+            return min(1, abs(t - middle) / half - 1)
+
+        other = solver("runge_kutta", "steep", longest_step=0.5, each_step=dips)
+        other.restart(0.0, start)
+        assert other.run(end) == EVENT
+        within(absolute_error(other.now.known, middle - half), 64 * EPSILON, "instant of the fall, s")
+
+
+def evaluations_with(solver, quick):
+    """After each of 30 steps towards an explosion; how often `quick` was asked by then."""
+    calls, found = [], []
+    one = solver("runge_kutta", "explosive", quick=lambda t, y: calls.append(t) or quick(len(calls), t))
+    for _ in range(30):
+        assert one.step() == STEPPED
+        found.append((one.now.known, one.now.rhs, len(calls)))
+    return found, calls
+
+
+def test_where_a_refused_attempt_comes_near_zero_the_step_that_is_accepted_costs_no_more(solver):
+    found, calls = evaluations_with(solver, lambda k, t: 1)
+    refused = set()
+    for (*_, before), (end, _, asked) in pairwise([(0, 0, 0), *found]):
+        refused |= {k for k in range(before + 1, asked + 1) if calls[k - 1] > end * (1 + 1e-9)}
+    assert refused
+    assert evaluations_with(solver, lambda k, t: 0.05 if k in refused else 1)[0] == found
+    beyond(evaluations_with(solver, lambda k, t: 0.05)[0][-1][1], found[-1][1], "evaluations near zero throughout")
+
+
+def test_a_value_near_zero_that_the_dense_output_alone_comes_across_costs_nothing(solver):
+    """It is asked for by a function that no parabola fits, at 1/10, 1/5 and 7/9 of a step of 1 s."""
+
+    def evaluations(*near):
+        def quick(t, y):
+            return 0.05 if any(abs(t % 1 - part) < 1e-9 for part in near) else 1
+
+        one = solver("runge_kutta", "clock", each_step=lambda t, y: 1.001 + sin(777 * t), quick=quick)
+        assert one.run(5.0) == STEPPED
+        return one.now.rhs
+
+    assert evaluations(1 / 10, 1 / 5, 7 / 9) == evaluations()
+    beyond(evaluations(1 / 4), evaluations(), "evaluations where a stage comes near zero")
+
+
+@pytest.mark.parametrize("engine", ["runge_kutta", "collocation"])
+def test_behind_an_event_that_changes_nothing_the_rest_of_the_step_is_searched(solver, engine):
+    """The value that is known inside the step lies before the event, and shows nothing of what follows."""
+    side = [1]
+    one = solver(
+        engine, "clock", each_step=lambda t, y: side[0] * (0.7 - t),
+        later_listed=lambda t, y: min(1, 50 * abs(t - 0.85) - 1),
+    )  # fmt: skip
+    for instant, fallen in ((0.7, EACH_STEP), (0.83, LATER_LISTED)):
+        assert (one.run(1.0), one.now.fallen) == (EVENT, fallen)
+        within(absolute_error(one.now.known, instant), 64 * EPSILON, "instant of the fall, s")
+        side[0] = -1
+        one.resume()
+    assert one.now.begin == 0
+
+
+def test_each_question_is_counted_at_starts_and_in_searches_too(solver, method):
+    asked, events = [], 0
+    one = solver(method, each_step=lambda t, y: asked.append(t) or 0.9 - y[1])
+    while one.run(20.0) == EVENT:
+        events += 1
+        one.restart(one.now.known + 2, harmonic(one.now.known + 2))
+    assert events > 2 and one.now.roots == len(asked)
