@@ -127,6 +127,7 @@ constexpr EventRow event_rows[] = {
     {.event = Event::lies_flat,
      .can_occur = always,
      .quick_value = lean_left,
+     .needs_N = false,
      .ends = always_ends,
      .ending = "lies flat"},
 };
@@ -162,8 +163,8 @@ Consequence follow_event(const EventRow& row, const Setup& setup, double t, doub
 }
 
 double margin_of(const EventRow& row, const Setup& setup, const InForce& in_force, double t, const double* y) {
-  const double value = row.value ? row.value(setup, in_force, t, y)
-                                 : row.quick_value(setup, y, rates_of(setup, in_force.scene_at(t), y).N);
+  const auto normal_force = [&] { return row.needs_N ? rates_of(setup, in_force.scene_at(t), y).N : 0; };
+  const double value = row.value ? row.value(setup, in_force, t, y) : row.quick_value(setup, y, normal_force());
   return std::clamp(signed_margin(row, in_force, value), -largest_margin, largest_margin);
 }
 

@@ -34,13 +34,14 @@ struct EventRow {
   // near zero. The value of an observed event changes its sign again and again.
   double (*value)(const Setup& setup, const InForce& in_force, double t, const double* y) = nullptr;
   double (*quick_value)(const Setup& setup, const double* y, double N) = nullptr;
+  bool needs_N = true;  // the quick value does
   // The only state that the value reads, below zero where it reads all.
   int (*state)(const InForce& in_force) = all_states;
   double rounding = 0;            // where there is an observation: a value beyond zero by less does not count
   bool in_model_exchange = true;  // it can occur in model exchange, and has an event indicator there
   bool (*ends)(const Setup& setup) = nullptr;  // whether it ends the run; null: it never does
-  // If the event bends the motion, this function decides what is in force from here on. In y it sets a rate that has
-  // become exactly zero, or the slip.
+  // A row with this function bends the motion: it decides what is in force from here on. In y it may set omega_3 to
+  // exactly zero, or the slip, and no other state. A row without it bends the motion only by bends_friction.
   void (*follow)(const Setup& setup, double t, double* y, InForce& in_force) = nullptr;
   bool bends_friction = false;  // it bends the motion where friction acts
   bool slides_anew = false;     // a wheel that slides after it has started to slide anew

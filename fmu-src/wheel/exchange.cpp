@@ -163,9 +163,12 @@ bool has_event(Wheel& w) {
 bool decide_in_event_mode(Wheel& w) {
   Run& run = w.run;
   const InForce before = run.in_force;
-  const double& omega_z = run.y()[WHEEL_OMEGA_3];
-  const double spin = omega_z;
+  const double spin = run.y()[WHEEL_OMEGA_3];
   const bool led = is_led(w);
+  const auto pass = [&](Event event) {
+    pass_event(w, event);
+    run.set_spin(run.y()[WHEEL_OMEGA_3]);
+  };
   const auto end_if_due = [&] {
     const Event ending = ending_at(w);
     if (ending != Event::none) end_run(w, ending);
@@ -174,17 +177,16 @@ bool decide_in_event_mode(Wheel& w) {
   if (before.mode().kind == WHEEL_HELD && led) run.set_spin(0);
   if (end_if_due()) return false;
   for (const EventRow& row : event_rows)
-    if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass_event(w, row.event);
+    if (row.event != Event::spin_changes && !ends_run(row, w.setup) && has_occurred(row, w)) pass(row.event);
   if (led && has_occurred(event_row(Event::spin_changes), w)) {
-    pass_event(w, Event::spin_changes);
-    run.set_spin(omega_z);
+    pass(Event::spin_changes);
   } else {
     const InForce passed = run.in_force;
     decide_mode(w.setup, run.t, run.y(), run.in_force);
     note_changes(w, passed);
   }
   if (end_if_due()) return false;
-  return omega_z != spin || differ(before.mode(), run.in_force.mode()) ||
+  return run.y()[WHEEL_OMEGA_3] != spin || differ(before.mode(), run.in_force.mode()) ||
          before.is_below(Event::lost_contact) != run.in_force.is_below(Event::lost_contact);
 }
 

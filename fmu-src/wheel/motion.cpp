@@ -176,7 +176,7 @@ Result step_to(Wheel& w, double t) {
     const auto evaluations = static_cast<unsigned>(solver.counters().rhs - before);
     const long long steps = std::max(evaluations / evaluations_per_step, 1U);
     work += (outcome == Outcome::event ? work_per_event : steps) * work_per_step;
-    if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event after t waits until it is reached
+    if (outcome != Outcome::event || solver.reaches(t)) continue;  // an event at t or later waits for the next step
     move_to(w, solver.known_until());
     update_state(w);
     const auto event = static_cast<Event>(solver.event());

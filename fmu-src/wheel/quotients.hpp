@@ -35,7 +35,7 @@ class Quotients {
   // With steps of h about x.
   template <class F>
   void take(double x, double h, const F& f) {
-    step(about_x, x, h, f);
+    if (find_centre(x, f)) step(about_x, x, h, f);
   }
 
   // With smaller and smaller steps for what bends within the first, as the forces of a small spin or slip do, until
@@ -47,6 +47,7 @@ class Quotients {
   bool refine(double x, double scale, const F& f) {
     constexpr double finest = std::numeric_limits<double>::epsilon();
     CONSTANT(double, finest_first, 1e-10, "of the scale", "where no larger step is possible, it is at its limit");
+    if (!find_centre(x, f)) return false;
     double part = first_part;
     while (part > (steps_ > 0 ? finest : finest_first) && !settle(scale)) {
       step(about_x, x, part * scale, f) || step(above_x, x, part * scale, f) || step(below_x, x, part * scale, f);
@@ -59,13 +60,18 @@ class Quotients {
   const Values& slopes() const { return slopes_; }
 
  private:
+  // The values at x itself; false where there are none.
+  template <class F>
+  bool find_centre(double x, const F& f) {
+    const std::optional<Values> centre = f(x);
+    if (centre) values_ = *centre;
+    return centre.has_value();
+  }
+
   // False where one of the places has no values. Of several steps, each derivative is that with the least error.
   // Differences from the value at x itself, so that what does not depend on x has the derivative zero.
   template <class F>
   bool step(const Stencil& stencil, double x, double h, const F& f) {
-    const std::optional<Values> centre = f(x);
-    if (!centre) return false;
-    values_ = *centre;
     Values quotient = {}, bend = {};
     for (int k = 0; k < 4; ++k) {
       const std::optional<Values> beside = f(x + stencil.places[k] * h);

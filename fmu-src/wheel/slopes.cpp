@@ -105,6 +105,7 @@ bool take_by_setting(const Wheel& w, unsigned parameter, Slopes& slopes) {
     std::copy_n(y_now, max_states, y);
     moved.run.in_force = w.run.in_force;
     moved.run.pending = Pending::nothing;
+    catch_up_with_orbit(moved, y, moved.run.in_force);
     enforce(moved.setup, moved.demand, moved.run.t, y, moved.run.in_force);
     return Instant(moved, y);
   };

@@ -26,7 +26,8 @@ void catch_up_with_orbit(const Record& r, const double* y, InForce& in_force) {
   if (r.run.phase == Phase::unfolded) set_sides(r.setup, r.run.t, y, in_force);
 }
 
-InForce in_force_now(const Record& r, double* y) {
+// Out of line: most readings follow no call that sets.
+[[gnu::noinline]] InForce in_force_now(const Record& r, double* y) {
   InForce in_force = r.run.in_force;
   catch_up_with_orbit(r, y, in_force);
   if (takes_effect(r)) enforce(r.setup, r.demand, r.run.t, y, in_force);

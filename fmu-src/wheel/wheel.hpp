@@ -22,6 +22,7 @@
 //     prepare                at the start
 //     in_force_now           on a copy, for a reading
 //     apply_demand           at the next step of co-simulation
+//     take_by_setting        for a derivative by a rate of the carrier, on a copy (slopes.cpp)
 //   act_at_once              model exchange: take_over alone; the mode waits for event mode, or follows at once if the
 //                            road has changed
 //   follow_event             what follows from an event is in force

@@ -285,6 +285,7 @@ def test_a_wheel_off_the_ground_at_the_start_is_taken_where_the_ground_may_pull(
 
 def test_what_a_call_answers_replaces_whatever_its_record_and_its_flags_held(library: Library) -> None:
     with at_odd(library) as wheel:
+        wheel.event()  # whatever has occurred at this place
         enter, terminate = (c_int(7) for _ in range(2))
         assert wheel.ask("CompletedIntegratorStep", 1, byref(enter), byref(terminate)) == OK
         assert (enter.value, terminate.value) == (0, 0)
