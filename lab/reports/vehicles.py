@@ -48,7 +48,7 @@ def bicycle(report: Report) -> dict[str, object]:
             lean, steer = np.abs(found - exact).max(1) / np.abs(exact).max(1)
             rides.append({"speed, m/s": v, "lean": lean, "steer": steer})
         castering, _, weave, capsize = of["eigenvalues"](5.0)
-        speeds = [of["speed"](*between) for between in ((4, 5), (5.5, 6.5))]
+        speeds = of["limits"]()
     published = EIGENVALUES | SPEEDS
     measured = [weave.real, weave.imag, capsize.real, castering.real, *speeds]
     table = pd.DataFrame({"quantity": [*published], "measured": measured, "published": [*published.values()]})
