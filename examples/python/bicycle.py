@@ -213,7 +213,7 @@ if __name__ == "__main__":
     for v, stop in RIDES.items():
         found, exact = (of(v, SMALL, np.linspace(0, stop, 301))[:2] for of in (ride, linear))
         lean, steer = np.abs(found - exact).max(1) / np.abs(exact).max(1)
-        print(f"At {v:g} m/s, off the benchmark's equations, over the largest value: lean {lean:.0e}, steer {steer:.0e}.")
+        print(f"At {v:g} m/s, off the benchmark, over the largest value: lean {lean:.0e}, steer {steer:.0e}.")
     print("Eigenvalues at 5 m/s:", ", ".join(f"{x:.6g}".removesuffix("+0j") for x in eigenvalues(5.0)))
     print("Stability changes at", ", ".join(f"{v:.5f}" for v in limits()) or "no speed", "m/s.")
     if len(sys.argv) > 1:
