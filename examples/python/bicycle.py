@@ -208,7 +208,6 @@ def draw(path, push=0.02):
     figure.savefig(path, dpi=80)
 
 
-
 if __name__ == "__main__":
     for v, stop in RIDES.items():
         found, exact = (of(v, SMALL, np.linspace(0, stop, 301))[:2] for of in (ride, linear))
