@@ -169,6 +169,7 @@ void Solver::visit(support::Archive& archive) {
   step_.visit(archive, problem_.states);
   archive.range(known_until_, step_.start, step_.end);
   archive.range(first_stop_, known_until_, never);
+  archive.range(problem_.first_step, 0, never);  // of collocation, which may take over later; from where a start was
   archive.count(pending_, 0, static_cast<int>(Outcome::event));
   archive.count(fallen_, 0, std::max(problem_.watched_count - 1, 0));
   archive.numbers(values_, max_watched);

@@ -223,3 +223,15 @@ def test_whatever_loads_a_wheel_its_own_state_is_taken(wheel, load, law, guided)
         w.step(1e-3)
         blob = w.serialized()
         assert wheel().back(blob).serialized() == blob
+
+
+def test_a_run_restored_on_its_way_to_rest_in_a_regularized_law_goes_on_with_the_same_bits(wheel):
+    """Collocation takes over there, with a first step that follows from the state in which the law began."""
+    law = {"s": 0.03, "friction_law": 2, "omega_s": 1e-3}
+    w, ends = wheel().start(**law).to(1.2), set()
+    for t in np.linspace(1.203, 1.227, 9):
+        state = w.to(t).serialized()
+        ends |= {w.to(1.235).bits(), wheel().start(**law).back(state).to(1.235).bits()}
+        w.back(state)
+    assert len(ends) == 1
+    assert wheel().start(**law, tolerance=1e-7).to(1.235).bits() not in ends  # the partner

@@ -46,7 +46,8 @@ def fields(kind: str, states: int, watched: int, stages: int, phase: int) -> lis
         ("y at both", 2 * states, -MOST, MOST),
     ]
     found += [("lowest margin", 1, -MOST, inf), ("inside at", 1, 0.0, 1.0), ("y inside", states, -MOST, MOST)]
-    found += [("known until", 1, -MOST, MOST), ("first stop", 1, -MOST, inf), ("pending", 1, 0, 2)]
+    found += [("known until", 1, -MOST, MOST), ("first stop", 1, -MOST, inf)]
+    found += [("first step of collocation", 1, 0.0, inf), ("pending", 1, 0, 2)]
     found += [("fallen", 1, 0, watched - 1), ("values", 13, -MOST, MOST), ("counters", 5, 0, COUNT)]
     found += [("size that is liked", 1, 0.0, MOST)]
     if kind == "runge_kutta":
