@@ -30,7 +30,7 @@ AT_ONCE = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disabl
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
 COMPONENTS = ("diagrams", "examples", "release")  # of the product, not the core
 BESIDE = {"vehicles": "examples"}  # whose tests share a process with those of another, and its builds
-LONGEST = ("hostile place", "lesson", "diagrams", "recipes", "examples", "studies")  # groups, by their computing time
+LONGEST = ("hostile place", "examples", "lesson", "diagrams", "recipes", "studies")  # groups, by their computing time
 
 
 def component(path: Path) -> str:
