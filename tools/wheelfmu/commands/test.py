@@ -30,9 +30,10 @@ def needs(given: Namespace) -> list[str]:
 
 
 def tests(workers: int, *words: str, on: tuple[str, ...] = (), build: str = "release", **variables: str) -> list[str]:
-    """Words that run tests. Those of a group (xdist_group) run in turn in one process, and share what they prepare."""
+    """Words that run tests. Those of a group (xdist_group) run in turn in one process, and share what they prepare;
+    groups begin in the order of tests/support/fixtures.py."""
     built = {"WHEEL_BUILD": str(ROOT / "build" / build), **processes.SAFE, **variables}
-    pytest = processes.python("pytest", "-q", "-n", workers, "--dist", "loadgroup", *words)
+    pytest = processes.python("pytest", "-q", "-n", workers, "--dist", "loadgroup", "--no-loadscope-reorder", *words)
     return ["env", *(f"{name}={value}" for name, value in built.items()), *on, *pytest]
 
 
