@@ -157,6 +157,20 @@ def test_any_two_values_act_alike_in_either_order_and_not_at_all_where_they_are_
         assert (w.put(**was).bits(), w.by(0.05).bits()) == (before, alone), pair
 
 
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("name", [*SET, *RATES])
+def test_a_derivative_of_one_order_alone_moves_the_wheel(wheel, name, order):
+    """As beside others that are next to nothing."""
+    start = {**AT_REST, "guided": "guide" in name, "theta_start": 1.3, "phi_dot_start": -3.0, "s": 0.001}
+    ends = []
+    for alone in (0.0, 1e-200):
+        w = wheel().start(**start)
+        ends.append(w.give({name: [alone] * order + [2.0]}).by(0.3).get(*STATES))
+    still = wheel().start(**start).by(0.3).get(*STATES)
+    within(absolute_error(*ends), 1e-9, "states apart")
+    beyond(absolute_error(ends[0], still), 1e-6, "states apart from those without the input")
+
+
 @pytest.mark.parametrize("formulation", [2, 3])
 def test_a_standing_wheel_with_friction_does_not_move_until_the_torque_beats_it(wheel, formulation):
     """|M_3| <= s N holds it; 2 N m/s from zero lets it go at s N / 2 seconds."""
