@@ -157,6 +157,22 @@ def test_any_two_values_act_alike_in_either_order_and_not_at_all_where_they_are_
         assert (w.put(**was).bits(), w.by(0.05).bits()) == (before, alone), pair
 
 
+@pytest.mark.parametrize("base", ["steered", "steered, slides"])
+def test_a_jump_of_the_carrier_meets_the_road_and_the_loads_that_are_set_with_it(wheel, base):
+    """As if they had been in force before; partner: they come after it."""
+    start, values = PAIRED[base]
+    w, jump, late = wheel().start(**start).by(0.1), {"psi_dot_guide": -1.0, "theta_dot_guide": 1.5}, {}
+    saved, moved = w.serialized(), ("omega_z", "phi_dot", "slip_x", "slip_y", "X_O_dot", "Y_O_dot")
+    for name in set(values) - set(jump):
+        one = {name: 20 * values[name] if name == "s" else values[name]}
+        together = w.back(saved).put(**jump, **one).get(*moved)
+        before = w.back(saved).put(**one).by(0.0).put(**jump).get(*moved)
+        within(absolute_error(together, before), 1e-9, f"rates apart with {name}")
+        late[name] = absolute_error(together, w.back(saved).put(**jump).by(0.0).put(**one).get(*moved))
+    beyond(late["s"], 1e-3, "rates apart where s comes after the jump")
+    beyond(late.get("mu_slide", 1), 1e-3, "rates apart where mu_slide comes after the jump")
+
+
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("name", [*SET, *RATES])
 def test_a_derivative_of_one_order_alone_moves_the_wheel(wheel, name, order):
