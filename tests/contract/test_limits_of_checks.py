@@ -134,6 +134,7 @@ TIPPED: list[tuple[Values, bool]] = [
     ({"theta_start": pi / 2 + 3e-15}, False),
     ({"theta_start": pi / 2 - 1e-9}, False),
     ({"theta_dot_start": 1e-9}, False),
+    ({"psi_dot_start": 1e-9}, False),
 ]
 
 

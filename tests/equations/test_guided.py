@@ -148,7 +148,7 @@ def test_a_jump_of_a_sliding_wheel_is_the_ramp_of_newton_and_euler(seed: int) ->
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_ramp_that_relieves_the_ground_gives_back_to_a_spin_until_it_stands_and_no_further(side: float) -> None:
-    """Sliding so fast that the force keeps its direction, against the spin; then friction of the axle drives nothing."""
+    """Sliding so fast that the force keeps its direction, against the spin. Friction of the axle drives nothing."""
     scene = eq.scene(eq.paper_wheel(s=0.03), kind=eq.ROLLING, sigma=side)
     scene.guided, scene.contact, scene.mu_slide = 1, 1, 0.5
     w, theta, theta_dot, spin = scene.wheel, 1.2, -1.0, 0.05
