@@ -1,11 +1,14 @@
 """Every function in every state: what the standard allows works, all else is an error with a sentence and no effect."""
 
-from ctypes import POINTER, addressof, byref, c_char, c_char_p, c_double, c_int, c_void_p
+from ctypes import POINTER, addressof, byref, c_char, c_char_p, c_double, c_int, c_void_p, cast, sizeof
+from typing import Any
 
 import pytest
 from contract.call_states import KINDS, OF, SITUATIONS, STATES, TABLE, bring_to, call, sound_arguments
+from fmpy.fmi2 import fmi2EventInfo
 
-from wheelfmu.fmu.driver import CO_SIMULATION, DISCARD, ERROR, OK
+from wheelfmu.fmu import driver
+from wheelfmu.fmu.driver import CO_SIMULATION, DISCARD, ERROR, OK, FMU2Wheel
 from wheelfmu.truth.exchange import loaded
 
 TYPES = ("Real", "Integer", "Boolean", "String")
@@ -69,6 +72,63 @@ def test_a_null_pointer_is_an_error_in_the_place_of_any_array_result_or_state(br
                 assert ["null pointer" in text for text in w.texts()] == [True] * (not freed), (function, k)
                 refused += 1
         assert w.serialized() == before and refused > 10
+
+
+def requests(w: FMU2Wheel) -> dict[str, tuple[list[Any], dict[int, int]]]:
+    """Of each function that answers into memory of the caller's: arguments, with several entries where there are lists,
+    and at the place of each answer its size in bytes."""
+    reals, choices, unknowns = (
+        w.refer("E", "F_X", "m", "tau"),
+        w.refer("n_steps", "method", "n_events"),
+        w.refer("tau", "E"),
+    )
+    knowns, rates, states, z = (
+        w.refer("M_1", "F_X"),
+        w.refer("phi", "lambda_x", "tau"),
+        8 * len(driver.STATES),
+        w.indicator_count,
+    )
+    state, size = w.snapshot(), len(w.serialized())
+    found = {"GetReal": ([reals, 4, None], {2: 32}), "GetInteger": ([choices, 3, None], {2: 12})}
+    found |= {"GetBoolean": ([w.refer("guided", "keep_contact"), 2, None], {2: 8})}
+    found |= {"GetRealOutputDerivatives": ([rates, 3, [1, 1, 1], None], {3: 24})}
+    found |= {"GetDirectionalDerivative": ([unknowns, 2, knowns, 2, [1.0, 2.0], None], {5: 16})}
+    of_states = ("GetContinuousStates", "GetDerivatives", "GetNominalsOfContinuousStates")
+    found |= dict.fromkeys(of_states, ([None, len(driver.STATES)], {0: states})) | {
+        "GetEventIndicators": ([None, z], {0: 8 * z})
+    }
+    found |= {
+        "NewDiscreteStates": ([None], {0: sizeof(fmi2EventInfo)}),
+        "CompletedIntegratorStep": ([1, None, None], {1: 4, 2: 4}),
+    }
+    found |= {"SerializeFMUstate": ([state, None, size], {1: size}), "SerializedFMUstateSize": ([state, None], {1: 8})}
+    found |= {
+        "GetStatus": ([driver.DO_STEP_STATUS, None], {1: 4}),
+        "GetBooleanStatus": ([driver.TERMINATED, None], {1: 4}),
+    }
+    return found | {"GetRealStatus": ([driver.LAST_SUCCESSFUL_TIME, None], {1: 8})}
+
+
+@each
+def test_an_answer_replaces_all_that_its_memory_held_and_nothing_behind_it(brought, situation):
+    """Each function answers two instances: one into bytes of 1, the other into bytes of 254."""
+    answered = 0
+    for function, (_, sizes) in requests(brought(situation)).items():
+        if situation not in TABLE[f"fmi2{function}"]:
+            continue
+        memories = []
+        for held in (b"\x01", b"\xfe"):
+            w = brought(situation)
+            arguments, types = requests(w)[function][0], w._functions[f"fmi2{function}"].argtypes[1:]
+            memory = {k: (c_char * (size + 8)).from_buffer_copy(held * (size + 8)) for k, size in sizes.items()}
+            for k in sizes:
+                arguments[k] = cast(memory[k], types[k])
+            assert w.ask(function, *arguments) == OK, function
+            assert all(memory[k].raw[size:] == held * 8 for k, size in sizes.items()), function
+            memories.append([memory[k].raw[:size] for k, size in sizes.items()])
+        assert memories[0] == memories[1], function
+        answered += 1
+    assert answered > 4 - 3 * (situation[1] == "instantiated") - (situation[1] == "error")
 
 
 # Of each function with lists: the places of the arguments that make one list, its count among them.

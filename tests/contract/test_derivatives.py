@@ -483,3 +483,12 @@ def test_derivatives_replace_what_their_array_held(wheel):
         assert w.ask("GetDirectionalDerivative", w.refer("theta_ddot", "lambda_1"), 2, knowns, 2, seeds, values) == OK
         found.append(list(values))
     assert found[0] == found[1] == found[2] and all(found[0])
+
+
+def test_derivatives_are_refused_wherever_in_the_list_one_is_not_finite(wheel):
+    """Off the ground no friction would do."""
+    w = wheel().start(keep_contact=True, F_Z=500.0)
+    for unknowns, status in ((("theta_ddot", "E", "tau"), OK), (("theta_ddot", "E", "mu_required"), DISCARD)):
+        for k in range(3):
+            order = w.refer(*unknowns[k:], *unknowns[:k])
+            assert w.ask("GetDirectionalDerivative", order, 3, w.refer("F_Z"), 1, [1.0], [0.0] * 3) == status, order

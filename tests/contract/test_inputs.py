@@ -5,6 +5,7 @@ J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the grou
 """
 
 from collections.abc import Callable
+from itertools import combinations
 from math import factorial
 
 import numpy as np
@@ -106,13 +107,84 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
     assert w.read(motion) != before
 
 
-@pytest.mark.parametrize("name", ["psi_dot_guide", "theta_dot_guide", "M_3", "s"])
-def test_a_value_that_is_set_and_taken_back_before_a_step_changes_no_bit_of_a_reading(wheel, name):
-    rates = {"psi_dot_guide": 1 / 3, "theta_dot_guide": 1 / 7}
-    w = wheel().start(guided=True, psi_dot_start=0.0, theta_dot_start=0.0, theta_start=1.3, s=0.02, **rates).to(0.1)
-    (before,), bits = w.get(name), w.bits()
-    assert w.put(**{name: before + 0.1}).bits() != bits  # the partner
-    assert w.put(**{name: before}).bits() == bits
+# A guided wheel that slides has all of them.
+SET = {"F_X": 5.0, "F_Y": -4.0, "F_Z": -30.0, "M_1": 0.4, "M_2": -0.3, "M_3": 2.0, "M_brake": 3.0}
+ROAD_SET = {"s": 0.03, "mu_max": 0.35, "mu_slide": 0.25, "slope": 0.1, "slope_direction": 0.7}
+RATES = {"psi_dot_guide": 1 / 3, "theta_dot_guide": 1 / 7}
+PAIRED = {
+    "rolls": ({"s": 0.02, "mu_max": 9.0}, SET | {"s": 0.03, "mu_max": 8.0, "slope": 0.1, "slope_direction": 0.7}),
+    "held": ({**AT_REST, "s": 0.02}, SET | {"s": 0.03, "slope": 0.1, "slope_direction": 0.7}),
+    "slides": ({"mu_max": 0.4, "mu_slide": 0.3, "slip_x_start": 1.0, "slope": 0.05}, SET | ROAD_SET),
+    "steered": (
+        {"guided": True, "psi_dot_start": 0.0, "theta_dot_start": 0.0, "theta_start": 1.3, "s": 0.02} | RATES,
+        SET | {"psi_dot_guide": 0.5, "theta_dot_guide": -0.2, "s": 0.03},
+    ),
+    "steered, slides": (
+        {
+            "guided": True,
+            "psi_dot_start": 0.0,
+            "theta_dot_start": 0.0,
+            "theta_start": 1.3,
+            "s": 0.02,
+            "mu_max": 0.4,
+            "mu_slide": 0.3,
+            "slip_x_start": 1.0,
+        }
+        | RATES,
+        SET | ROAD_SET | {"psi_dot_guide": 0.5, "theta_dot_guide": -0.2},
+    ),
+}
+
+
+@pytest.mark.parametrize("base", PAIRED)
+def test_any_two_values_act_alike_in_either_order_and_not_at_all_where_they_are_taken_back(wheel, base):
+    """Read at once, and after a step."""
+    start, values = PAIRED[base]
+    w = wheel().start(**start).by(0.1)
+    saved, before = w.serialized(), w.bits()
+    alone = w.by(0.05).bits()
+    for pair in combinations(values, 2):
+        found = []
+        for order in (pair, pair[::-1]):
+            w.back(saved)
+            was = dict(zip(order, w.get(*order), strict=True))
+            w.put(**{name: values[name] for name in order})
+            found.append((w.bits(), w.by(0.05).bits()))
+        assert found[0] == found[1], pair
+        assert found[0][1] != alone, pair  # the partner
+        w.back(saved).put(**{name: values[name] for name in order})
+        w.bits()  # a reading under way is not kept
+        assert (w.put(**was).bits(), w.by(0.05).bits()) == (before, alone), pair
+
+
+@pytest.mark.parametrize("base", ["steered", "steered, slides"])
+def test_a_jump_of_the_carrier_meets_the_road_and_the_loads_that_are_set_with_it(wheel, base):
+    """As if they had been in force before; partner: they come after it."""
+    start, values = PAIRED[base]
+    w, jump, late = wheel().start(**start).by(0.1), {"psi_dot_guide": -1.0, "theta_dot_guide": 1.5}, {}
+    saved, moved = w.serialized(), ("omega_z", "phi_dot", "slip_x", "slip_y", "X_O_dot", "Y_O_dot")
+    for name in set(values) - set(jump):
+        one = {name: 20 * values[name] if name == "s" else values[name]}
+        together = w.back(saved).put(**jump, **one).get(*moved)
+        before = w.back(saved).put(**one).by(0.0).put(**jump).get(*moved)
+        within(absolute_error(together, before), 1e-9, f"rates apart with {name}")
+        late[name] = absolute_error(together, w.back(saved).put(**jump).by(0.0).put(**one).get(*moved))
+    beyond(late["s"], 1e-3, "rates apart where s comes after the jump")
+    beyond(late.get("mu_slide", 1), 1e-3, "rates apart where mu_slide comes after the jump")
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("name", [*SET, *RATES])
+def test_a_derivative_of_one_order_alone_moves_the_wheel(wheel, name, order):
+    """As beside others that are next to nothing."""
+    start = {**AT_REST, "guided": "guide" in name, "theta_start": 1.3, "phi_dot_start": -3.0, "s": 0.001}
+    ends = []
+    for alone in (0.0, 1e-200):
+        w = wheel().start(**start)
+        ends.append(w.give({name: [alone] * order + [2.0]}).by(0.3).get(*STATES))
+    still = wheel().start(**start).by(0.3).get(*STATES)
+    within(absolute_error(*ends), 1e-9, "states apart")
+    beyond(absolute_error(ends[0], still), 1e-6, "states apart from those without the input")
 
 
 @pytest.mark.parametrize("formulation", [2, 3])

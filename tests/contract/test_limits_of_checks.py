@@ -104,6 +104,15 @@ def test_the_grip_of_a_dry_road_is_warned_of_soon_in_the_wheels_own_time_whateve
     assert 0.2 <= float(text.split()[2]) <= 0.2 + late
 
 
+@pytest.mark.parametrize(("share", "warned"), [(0.98, False), (1.02, True)])
+@sides
+def test_the_grip_that_a_turn_of_the_carrier_needs_is_warned_of_without_any_load(wheel, side, share, warned):
+    """On a circle at 10 m/s."""
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=pi / 2, phi_dot_start=-10 / (PAPER.r_0 + PAPER.r))
+    w.put(psi_dot_guide=side * share * PAPER.g / 10).by(0.2)
+    assert (GRIP in texts_of(w)) == warned
+
+
 @pytest.mark.parametrize(("spin", "warned"), [(-1.0, False), (-60.0, True)])
 def test_the_grip_is_that_of_one_instant_in_a_step_in_which_the_load_grows(wheel, spin, warned):
     """The slow wheel is held long before its brake could ask for so much."""
@@ -125,6 +134,7 @@ TIPPED: list[tuple[Values, bool]] = [
     ({"theta_start": pi / 2 + 3e-15}, False),
     ({"theta_start": pi / 2 - 1e-9}, False),
     ({"theta_dot_start": 1e-9}, False),
+    ({"psi_dot_start": 1e-9}, False),
 ]
 
 

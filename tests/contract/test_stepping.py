@@ -57,6 +57,18 @@ def test_a_tolerance_and_a_stop_time_that_are_not_defined_count_for_nothing_what
     assert ends[0] == ends[1] == ends[2] != ends[3]
 
 
+def test_of_several_experiments_that_are_set_up_the_last_alone_counts(wheel):
+    """Nothing is left of a tolerance, a start or a stop time that it does not define."""
+    found = []
+    for first in ((), (1e-5, 3.0, 4.0)):
+        w = wheel()
+        assert not first or w.setupExperiment(*first) == OK
+        found.append(w.start(formulation=2).run([0.5, 5.0]))
+    assert found[0] == found[1]
+    w = wheel()
+    assert w.start(tolerance=1e-5, stop=5.0, formulation=2).run([0.5, 5.0]) != found[0]  # the partner
+
+
 @pytest.mark.parametrize("values", [{}, {"s": 0.02}, {"formulation": 3}], ids=["free", "friction", "multibody"])
 def test_what_is_read_between_two_changes_is_seen_in_no_counter(wheel, values):
     """Two changes 0.02 s apart: the step after the second is 0.02 s long, and a fine grid reads inside it."""

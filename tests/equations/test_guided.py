@@ -147,6 +147,21 @@ def test_a_jump_of_a_sliding_wheel_is_the_ramp_of_newton_and_euler(seed: int) ->
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_ramp_that_relieves_the_ground_gives_back_to_a_spin_until_it_stands_and_no_further(side: float) -> None:
+    """Sliding so fast that the force keeps its direction, against the spin. Friction of the axle drives nothing."""
+    scene = eq.scene(eq.paper_wheel(s=0.03), kind=eq.ROLLING, sigma=side)
+    scene.guided, scene.contact, scene.mu_slide = 1, 1, 0.5
+    w, theta, theta_dot, spin = scene.wheel, 1.2, -1.0, 0.05
+    after = eq.Motion(0.3, theta, 0, 0, 0, side * spin, 0, 0, -side * 1e4, 0)
+    jump(scene, 0.0, theta_dot, after)
+    relief = -w.m * w.r_0 * np.cos(theta) * theta_dot
+    driven, given = (w.r_0 + w.r * np.sin(theta)) * scene.mu_slide * relief / w.J_z, w.s * relief / w.J_z
+    want = -(1 - spin / (driven - given)) * driven
+    within(abs(side * after.phi_dot - want), 1e-6, "spin apart, rad/s")
+    beyond(given * (1 - spin / driven), 0.01, "by the axle's friction, rad/s")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_held_wheel_that_slides_is_released_within_a_jump_where_the_slip_has_turned_along_it(side: float) -> None:
     """Held as long as friction along the wheel turns it by less than s N: with ten times s, to the end."""
     for s, held in ((0.03, False), (0.3, True)):

@@ -239,6 +239,33 @@ def test_of_endings_at_one_instant_the_last_of_the_list_counts(library: Library,
         assert len(lost) >= ["needs a friction", "lifted off", "lies flat"].index(ending) + (F_Z > 0)
 
 
+def test_an_end_in_the_mode_that_held_up_to_an_event_counts_though_the_next_mode_needs_less(library: Library) -> None:
+    """A brake beyond the grip has brought the spin across zero, where a held wheel needs no force."""
+    with exchange(library, mu_max=0.5, **{**AT_REST, "phi_dot_start": -20.0}) as wheel:
+        x = wheel.x()
+        for brake, ends in ((20.0, False), (200.0, True)):
+            wheel.place(0.1, np.where(np.array(STATES) == "omega_z", -20.0, x))
+            wheel.put(M_brake=20.0).event()
+            wheel.place(0.2, np.where(np.array(STATES) == "omega_z", 1e-5, x))
+            assert bool(wheel.put(M_brake=brake).event().terminateSimulation) == ends
+
+
+@pytest.mark.parametrize("theta", [0.0, np.pi])
+def test_a_wheel_that_lies_flat_has_ended_however_fast_it_rises(library: Library, theta: float) -> None:
+    with exchange(library) as wheel:
+        wheel.place(0.1, np.array([0, 0, 0, theta, 0, np.copysign(1e3, 1 - theta), 0, 0]))
+        assert wheel.wants_event() and wheel.event().terminateSimulation
+
+
+def test_the_clock_of_the_caller_is_that_of_the_messages_whatever_the_start_time(library: Library) -> None:
+    for start in (0.0, -7.5, 1e5):
+        with loaded(library).new(logging=True).start(start=start, s=0.03, **AT_REST) as wheel:
+            assert wheel.decide() and wheel.enterContinuousTimeMode() == OK
+            wheel.place(start + 0.5, wheel.x())
+            wheel.put(M_3=50.0).event()
+            assert wheel.texts() == [f"t = {start + 0.5:.15g} s: release, omega_z becomes positive."]
+
+
 # theta in rad, the largest rate in rad/s; flat ones fall on either side.
 FINITE = [(1.0, 10.0, -2.0, OK), (4.0, 10.0, 0.0, OK), (4.0, 10.0, -2.0, OK), (1.0, 1e200, -2.0, DISCARD)]
 

@@ -319,7 +319,7 @@ JUMPS: dict[str, tuple[dict[str, float], tuple[float, float], dict[str, float]]]
     "rolls": (RISES, (1.5, 0.7), {}),
     "pressed": (RISES | {"s": 0.03}, (1.5, 1.7), {}),
     "relieved": (RISES | {"s": 0.03}, (-1.5, -0.7), {}),
-    "friction stops it": (RISES | {"s": 0.03, "phi_dot_start": -0.001}, (0.0, 2.0), {}),
+    "friction stops it": (RISES | {"s": 0.03, "phi_dot_start": -0.01}, (0.0, 2.0), {}),
     "held": (RISES | {"s": 0.03, "phi_dot_start": 0.0}, (0.1, 2.0), {}),
     "held, relieved": (RISES | {"s": 0.03, "phi_dot_start": 0.0}, (0.1, -2.0), {}),
     "released by the brake": (RISES | {"phi_dot_start": 0.0}, (3.0, 2.0), {"M_brake": 30.0}),
@@ -332,6 +332,11 @@ JUMPS: dict[str, tuple[dict[str, float], tuple[float, float], dict[str, float]]]
         {},
     ),
     "regularized": (RISES | {"s": 0.03, "friction_law": 2, "omega_s": 0.5, "phi_dot_start": -0.3}, (0.5, 1.7), {}),
+    "into the layer": (
+        RISES | {"s": 0.6, "friction_law": 2, "omega_s": 0.01, "phi_dot_start": -0.3},
+        (-15.0, 3.7),
+        {},
+    ),
 }
 AFTER = 2e-3  # s
 
