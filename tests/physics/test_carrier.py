@@ -1,5 +1,5 @@
 """A wheel on its carrier (`guided`), which holds heading and tilt, or steers and leans it: closed forms, its own
-reference, jumps of the rates, springs and inertias that rise towards it, power, rates, model exchange.
+reference, jumps of the rates, inertias that rise towards it, model exchange.
 
 R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta), I = J_z + m rho^2. Along e1 v = -rho omega_z and
 I omega_z' = M_3 + tau - rho F_1 while it grips and theta stands; N = m g - F_Z then. Straight motions that friction
@@ -318,14 +318,6 @@ def test_a_jump_that_relieves_the_ground_takes_nothing_from_the_brake_that_holds
     beyond(spins[1], 5e-3, "spin after the same jump under a brake of 2 N m, rad/s")
 
 
-def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
-    assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
-    start, (_, theta_dot), _ = JUMPS["friction stops it"]
-    lift = M * R_0 * cos(start["theta_start"]) * theta_dot  # N s
-    whole = start["s"] * lift / (J_Z + M * (R_0 + TUBE * sin(start["theta_start"])) ** 2)
-    beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
-
-
 @pytest.mark.parametrize("slip", [1.0, -1.0])
 def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_leaves_its_side(library, slip) -> None:
     """Across its heading, so that the road hardly turns it: the pressure of the swing takes some 0.07 rad/s."""
@@ -445,30 +437,6 @@ def test_infinite_inertia_across_the_axle_is_its_limit(library: Library) -> None
 
 
 # ---- power, rates, model exchange ----
-
-
-@courses
-@surfaces
-def test_the_power_of_carrier_loads_slip_and_friction_changes_its_energy(library: Library, course, start, loads):
-    """That of a carrier at rest is zero, and so is that of M_1 and M_2."""
-    times = np.linspace(0, 0.5, 501)
-    run = driven(library, [Piece(0.0, 0.5, *course, loads)], times, **start)
-    force = {name: a + b * times for name, (a, b) in loads.items()}
-    omega_2 = run["psi_dot"] * np.sin(run["theta"])
-
-    def error(judged: float, slips: float = 1.0) -> float:
-        power = force["F_X"] * run["X_O_dot"] + force["F_Y"] * run["Y_O_dot"] + force["F_Z"] * run["Z_O_dot"]
-        power += force["M_1"] * run["theta_dot"] + force["M_2"] * omega_2 + force["M_3"] * run["omega_z"]
-        power += run["tau"] * run["omega_z"]
-        power += slips * (run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"])
-        power += judged * (run["M_guide_1"] * run["theta_dot"] + run["M_guide_2"] * omega_2)
-        return abs(float(simpson(power, x=times)) - (run["E"][-1] - run["E"][0]))
-
-    within(error(1.0), 1e-8, "energy off the work, J")
-    if any(course[0]):
-        beyond(error(0.999), 1e-4, "energy off the work with 0.1 % less of the carrier's, J")
-    if "mu_slide" in start:
-        beyond(error(1.0, 0.0), 1.0, "energy off the work without the slip's, J")
 
 
 def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) -> None:

@@ -1,4 +1,4 @@
-"""The wheel slides where grip ends, and grips again: balances, the independent reference, cost, endings, ice.
+"""The wheel slides where grip ends, and grips again: balances, the independent reference, cost, endings.
 
 Coulomb's law: grip up to mu_max N, then mu_slide N against the slip; R = r_0 + r. Straight: test_straight.py. SI.
 """

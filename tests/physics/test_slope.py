@@ -1,4 +1,4 @@
-"""A road that slopes, or begins to: standing, braked and uphill against closed forms.
+"""A road that slopes, or begins to: a wheel at rest, and any other that goes on from its state on the next road.
 
 The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a sin b, -cos a) for a slope a that rises
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. Straight down: test_straight.py. SI units.

@@ -1,5 +1,5 @@
-"""Zero as a limit that is reached gradually: ice under ramps of every load, a hold that a ramp ends, a normal force and
-a brake that ramps lead to zero; and every quantity that may be zero, which changes the motion by as much as itself.
+"""Zero as a limit that is reached gradually: ice under ramps, a hold that a ramp ends, a normal force that a ramp leads
+to zero; every quantity that may be zero, which changes the motion by as much as itself; and a spin that is rounding.
 
 Upright, heading along X, R = r_0 + r, I = J_z + m R^2, slip_x = v + R omega_z. SI.
 """
