@@ -55,19 +55,6 @@ def test_on_ice_a_torque_spins_the_wheel_from_the_first_instant_on(wheel, ice, s
     beyond(abs(PAPER.J_z / INERTIA - 1), 0.1, "spin on a road that grips, relative")
 
 
-@each_steepness
-@each_order_and_a_jump
-@pytest.mark.parametrize("axis", ["X", "Y"])
-def test_on_ice_a_force_moves_O_alone(wheel, steep, order, axis):
-    w = on_ice(wheel, ICE[0], **{f"F_{axis}": ramp(steep, order)})
-    gain = steep / (order + 1) / PAPER.m
-    along, across = np.array(w.get("X_O_dot", "Y_O_dot")) - (v, 0)
-    own, other = (along, across) if axis == "X" else (across, along)
-    within(abs(own / gain - 1), 1e-12 / gain + 1e-9, "velocity along the force, relative")
-    within(abs(other), 1e-12 + 1e-9 * gain, "velocity across it, m/s")
-    within(abs(w.get("omega_z")[0] + v / R), 1e-12 + 1e-9 * gain, "change of the spin, rad/s")
-
-
 @pytest.mark.parametrize("steep", [1.0, 5.0, 30.0])
 def test_on_ice_a_brake_that_begins_at_zero_stops_the_spin_and_holds_it_while_O_goes_on(wheel, steep):
     """J_z |omega_z|' = -steep t."""
