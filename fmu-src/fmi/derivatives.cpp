@@ -44,13 +44,16 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     if (!i.check_arrays(n, v, values) || !i.check_arrays(n, orders, values)) return fmi2Error;
     if (!check_all(i, v, n, is_input, "an input")) return fmi2Error;
     const wheel::Listed inputs = {v};
-    for (std::size_t k = 0; k < n; ++k)
-      if (orders[k] < 1 || orders[k] > wheel::max_order || !std::isfinite(values[k]) ||
-          (values[k] != 0 && is_idle(i.wheel, inputs[k])))
-        return i.log(Topic::error,
-                     "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed, and those of a "
-                     "carrier's rate need guided = true and co-simulation.",
-                     orders[k], values[k], wheel::row_of(inputs[k]).name, wheel::max_order);
+    for (std::size_t k = 0; k < n; ++k) {
+      const char* const name = wheel::row_of(inputs[k]).name;
+      if (!i.check(orders[k] >= 1 && orders[k] <= wheel::max_order && std::isfinite(values[k]),
+                   "%s: derivative %d = %s of %s: orders 1 to %d and finite values are allowed.", orders[k], values[k],
+                   name, wheel::max_order) ||
+          !i.check(values[k] == 0 || !is_idle(i.wheel, inputs[k]),
+                   "%s: derivative %d = %s of %s: this input needs guided = true and co-simulation.", orders[k],
+                   values[k], name))
+        return fmi2Error;
+    }
     for (std::size_t k = 0; k < n; ++k) wheel::set(i.change(), inputs[k], values[k], orders[k]);
     return fmi2OK;
   });

@@ -76,11 +76,10 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
   return guarded(c, legality::before_initialization, [&](Instance& i) {
-    if (!std::isfinite(start) || (has_stop && !(stop >= start)) || (has_tolerance && !(tolerance > 0)))
-      return i.log(Topic::error,
-                   "%s: start %s s, stop %s s, tolerance %s: start must be finite, stop not before it, the tolerance "
-                   "positive.",
-                   start, stop, tolerance);
+    if (!i.check(std::isfinite(start), "%s: start %s s: it must be finite.", start) ||
+        !i.check(!has_stop || stop >= start, "%s: stop %s s: it must not lie before the start, %s s.", stop, start) ||
+        !i.check(!has_tolerance || tolerance > 0, "%s: tolerance %s: it must be positive.", tolerance))
+      return fmi2Error;
     wheel::set_experiment(i.change(), start, has_stop ? stop : solver::never, has_tolerance ? tolerance : 0);
     return fmi2OK;
   });

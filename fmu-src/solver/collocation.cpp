@@ -62,6 +62,9 @@ CONSTANT(double, distance, 0.1, "1", "how far the sweeps may be from their limit
 CONSTANT(double, error_of_last, 0.005, "1", "error of the polynomial over its last term");
 CONSTANT(double, error_of_steep, 0.1, "1", "the same where a rate is steep: the terms fall less fast");
 CONSTANT(int, most_sweeps, 30, "sweeps", "what is left after them is rounding");
+CONSTANT(int, first_sweeps, 4, "sweeps", "before their changes fall at a rate, which is that of the size");
+CONSTANT(double, slow, 0.5, "1",
+         "a change over the one before: from there on a shorter step is cheaper than more sweeps");
 CONSTANT(int, most_tries, 40, "steps", "a step that is refused 40 times is lost in the rounding of time");
 CONSTANT(double, stretch_to_stop, 0.01, "of the step", "by which it is longer to end at the stop: no tiny step");
 CONSTANT(double, leapt, 1e3, "errors", "what a step over a bend counts as: the next one is a third as long");
@@ -173,12 +176,12 @@ bool Collocation::predict(const Problem& problem, const Step& last, Counters* co
 }
 
 // (predicted rates) => rates, and the error of the step in units of the weights; infinite where the sweeps do not
-// converge. They end where
+// converge, or slowly. They end where
 //   the change is below `distance`;
 //   the changes that would follow, change^2 / (before - change), are: from the second sweep on, and where the step is
 //     not predicted, from a small change on, as the first fall need not be that of the next;
 //   the change is below one and does not fall, or most_sweeps are made: what is left is rounding;
-//   the change is not below one and does not fall, or is not finite: they do not converge.
+//   the change is not below one and does not fall, or slowly, or is not finite: a shorter step converges faster.
 double Collocation::try_size(const Problem& problem, const double* weights, bool predicted, Counters* counters,
                              Step* step) {
   Newtons newtons;
@@ -193,7 +196,8 @@ double Collocation::try_size(const Problem& problem, const double* weights, bool
     if (sweeps > 0 && problem.steep) prepare(problem, *step, &newtons);
     change = sweep(problem, weights, newtons, counters, step);
     const bool falls = sweeps < most_sweeps && change < before;
-    if (!falls && !(change < 1)) return INFINITY;
+    const bool is_slow = sweeps > first_sweeps && change > slow * before;
+    if ((!falls || is_slow) && !(change < 1)) return INFINITY;
     converged = !falls || change < distance ||
                 (sweeps > 0 && change < largest_last && change * change < distance * (before - change));
   }

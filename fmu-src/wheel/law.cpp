@@ -32,7 +32,7 @@ WheelFriction mode_at(const Setup& setup, const WheelScene& scene, bool braked, 
 }
 
 // Whether the modes of a wheel that starts to slide are tried one by one, held first. That is where it has no spin, and
-// rolling friction or a brake.
+// rolling resistance or a brake.
 bool may_be_held(const Setup& setup, const InForce& in_force, const double* y) {
   return resists(in_force.road.s, in_force.inputs.braked) && setup.friction_law == exact_law && y[WHEEL_OMEGA_3] == 0;
 }

@@ -63,7 +63,8 @@ bool check_value(const Reporter& reporter, unsigned v, double value) {
   if (!std::isfinite(value)) return reporter.check(false, "%s = %s: a finite number is needed.", row.name, shown);
   if (v == theta_start)
     return reporter.check(angle_from_flat(value) > flat_angle,
-                          "%s = %s rad: the wheel must stand, more than %s rad from lying flat at 0 and at pi.",
+                          "%s = %s rad: it must lie between 0 and pi, where the wheel lies flat, and more than %s rad "
+                          "from both.",
                           row.name, shown, Digits{flat_angle, 6});
   return reporter.check(!broken.message, broken.message, row.name, shown, Digits{broken.value, 6});
 }

@@ -101,9 +101,12 @@ def calls(library: Library) -> Iterator[Case]:
         assert w.ask(function, *arguments) in (DISCARD, ERROR)
         return w.said()
 
-    text = f"start {START} s, stop 5.5 s, tolerance 1e-05: "
-    text += "start must be finite, stop not before it, the tolerance positive."
-    yield answer("SetupExperiment", 1, 1e-5, START, 1, 5.5), f"fmi2SetupExperiment: {text}"
+    for experiment, text in (
+        ((1, 1e-5, inf, 1, 5.5), "start inf s: it must be finite."),
+        ((1, 1e-5, START, 1, 5.5), f"stop 5.5 s: it must not lie before the start, {START} s."),
+        ((1, -1e-5, START, 1, 8.5), "tolerance -1e-05: it must be positive."),
+    ):
+        yield answer("SetupExperiment", *experiment), f"fmi2SetupExperiment: {text}"
     w.start(START, stop=8.5)
     for t, h, text in (
         (START, -0.5, f"from {START} s by -0.5 s: times must be finite and the step not negative."),
@@ -122,9 +125,10 @@ def calls(library: Library) -> Iterator[Case]:
     rates, inputs = "GetRealOutputDerivatives", "SetRealInputDerivatives"
     yield answer(rates, [999], 1, [1], [0]), f"fmi2{rates}: value reference 999 is not a real output."
     yield answer(rates, theta, 1, [2], [0]), f"fmi2{rates}: order 2 of theta: only the first derivative is provided."
-    text = "derivative 4 = 2.5 of F_X: orders 1 to 3 and finite values are allowed"
-    text += ", and those of a carrier's rate need guided = true and co-simulation."
+    text = "derivative 4 = 2.5 of F_X: orders 1 to 3 and finite values are allowed."
     yield answer(inputs, force, 1, [4], [2.5]), f"fmi2{inputs}: {text}"
+    text = "derivative 1 = 2.5 of psi_dot_guide: this input needs guided = true and co-simulation."
+    yield answer(inputs, w.refer("psi_dot_guide"), 1, [1], [2.5]), f"fmi2{inputs}: {text}"
     yield answer("GetRealStatus", 1, [0]), "fmi2GetRealStatus: there is no status of kind 1."
     spin = w.by(0.5).get("omega_z")[0]
     assert w.put(M_3=1e300).step(0.5) == ERROR

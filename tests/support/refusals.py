@@ -9,7 +9,7 @@ from wheelfmu.fmu.driver import Values
 
 NUMBER, ABOVE = "a finite number is needed.", "it must be greater than 0."
 TRIANGLE = "kg m2: none may exceed the sum of the other two."
-STANDS = "the wheel must stand, more than 1e-07 rad from lying flat at 0 and at pi."
+STANDS = "it must lie between 0 and pi, where the wheel lies flat, and more than 1e-07 rad from both."
 STEADY = "a guided wheel needs 0 for both; in co-simulation psi_dot_guide and theta_dot_guide turn it."
 CARRIER = "these inputs need guided = true and co-simulation; otherwise they and their derivatives must be 0."
 REFUSALS: list[tuple[Values, str, Values]] = [

@@ -21,6 +21,9 @@ def test_keys_move_the_time_and_switch_what_is_shown(either):
     either.wait_for_function("page.player.t > 0.05")
     either.keyboard.press(" ")
     assert not either.evaluate("page.player.playing")
+    for shown in (True, False):
+        either.keyboard.press("?")
+        assert either.locator("#help").is_visible() is shown
 
 
 def test_a_key_shows_and_hides_the_force_of_the_ground(recorded):

@@ -94,10 +94,11 @@ export function stepsOf() {
       speed: 0.25,
       text: (wheel) => {
         const {tips, rights} = wheel.perRadian;
-        return `To turn L takes a moment, and what turns the wheel does not tip it. For a small lean, each radian of it
-          brings a moment that tips, m g r<sub>0</sub> = ${tips.toFixed(1)} N m, and a turn whose moment rights:
-          (J<sub>z</sub> + m R²)(J<sub>z</sub>/J<sub>x</sub>) ω² = ${(rights / spin(wheel) ** 2).toFixed(1)} ω²
-          N m, R = r<sub>0</sub> + r. The first does not depend on the spin, the second grows with its square.`;
+        return `A moment that turns L does not tip the wheel. For a small lean, each radian of it brings two moments. One
+          tips the wheel: m&nbsp;g&nbsp;r<sub>0</sub> = ${tips.toFixed(1)} N m. The turn of L takes up the
+          other, which so rights the wheel: (J<sub>z</sub> + m R²)(J<sub>z</sub>/J<sub>x</sub>) ω² = ${
+            (rights / spin(wheel) ** 2).toFixed(1)} ω² N m, with R = r<sub>0</sub> + r. The first does not depend on
+          the spin, the second grows with its square.`;
       },
       attempt: 'Drag the spin until both bars are equal. Which spin is it?',
     },
@@ -114,7 +115,7 @@ export function stepsOf() {
           `Both moments are equal at ω<sub>crit</sub> = ${limit.toFixed(2)} rad/s. Above it the turn rights
         more than the weight tips: the faster wheel sways by ${lean(fast)}°. Below it the lean grows until it is no
         longer small: the slower one leans by ${lean(slow)}°. The mass cancels, its distribution does not.`,
-      attempt: 'Start with more lean: above how much does the faster one lean by more than 20°, too?',
+      attempt: 'Start with more lean: above which initial lean does the faster one, too, lean by more than 20°?',
       ask: {
         text: `Two wheels with half a degree of lean: one 10 % slower than ${
             limit.toFixed(2)} rad/s, one 10 % faster. Which of
@@ -132,13 +133,12 @@ export function stepsOf() {
       diagrams: ['lean', 'phase'],
       text: (wheel) =>
           `Far too slow to stay up, it comes down to a lean of ${lean(wheel)}°, turns fast about the vertical,
-        and rises to its 15° again: nothing takes energy. Every half swing is the one before, turned and mirrored, so
-        the rate of the tilt over the tilt is one closed curve, run through for ever.`,
+        and rises to its 15° again: nothing takes energy away. Every half swing is the one before, turned and mirrored,
+        so the rate of the tilt over the tilt is one closed curve, traced again and again.`,
       attempt: 'Change the spin: each motion has a closed curve of its own.',
       ask: {
-        text:
-            `The paper's wheel: 15° of lean and only 2 rad/s, too little to stay up; no friction. Draw into the diagram how
-          its lean goes on for ten seconds; then play.`,
+        text: `The paper's wheel: 15° of lean and only 2 rad/s, too little to stay up; no rolling resistance. Draw into
+          the diagram how its lean goes on for ten seconds; then play.`,
         until: 5,
       },
     },
@@ -150,8 +150,8 @@ export function stepsOf() {
       diagrams: ['spin', 'hold'],
       eye: 'abreast',
       text: ({table, phases: {sticks: [[begin]], transitions}}) =>
-          `The ground gives way: its force ${N} acts ahead of the
-        contact, by s = 0.03 m. So it has a moment s N about the axle, against the spin. At ${
+          `A real road and a real tyre give way a little. Here all of that is one length: the force ${N} of the
+        ground acts s = 0.03 m ahead of the contact. So it has a moment s N about the axle, against the spin. At ${
               begin.toFixed(2)} s the spin
         is used up. From then on N moves only as far as it takes to <b class="stick">hold</b> the spin at zero; where that takes
         more than s N (the band), the wheel is released. In ${table.end.toFixed(0)} s it is held, released or reversed
@@ -202,12 +202,14 @@ export function stepsOf() {
       text: (wheel) => {
         const {slides: [[begin, end]], sticks: [[locked]]} = wheel.phases;
         const way = Math.hypot(...['X_O', 'Y_O'].map((name) => at(wheel, end)(name) - at(wheel, begin)(name)));
-        return `A fork holds this wheel upright. The brake rises to 100 N m within half a second, and with it the road's
-          force, until it touches the outer circle, μ<sub>max</sub> N, at ${begin.toFixed(2)} s. There the grip is lost:
-          the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${
+        const speed = at(wheel, 0)('v_x').toFixed(1);
+        return `A fork holds this wheel upright, at ${speed} m/s. The brake rises to 100 N m within half a second, and
+          with it the road's force, until it touches the outer circle, μ<sub>max</sub> N, at ${
+            begin.toFixed(2)} s. There
+          the grip is lost: the force drops to the inner circle, μ<sub>slide</sub> N, opposite to the slip. ${
             (locked - begin).toFixed(2)} s
           later the wheel is locked: ${TURN} is zero, and the ${SLIP} is ${V}. It slides
-          ${way.toFixed(1)} m, by μ<sub>slide</sub> g = ${
+          ${way.toFixed(1)} m, decelerated by μ<sub>slide</sub> g = ${
             (wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
       },
       attempt: 'Brake with 50 N m: the force stays within the outer circle, the wheel rolls on, and it stops sooner.',
@@ -244,7 +246,7 @@ export function stepsOf() {
       start: {...PAPER, s: 0, mu: 0, steer: 0, body: 'tyre'},
       controls: ['body', 'lean', 'spin', 's', 'mu', 'steer', 'push'],
       text: () =>
-          `The wheel is yours. <b>Grip</b> 0 means that it never slides; else it slides with 85 % of that friction
+          `The wheel is yours. <b>Grip</b> 0 means that it never slides; otherwise it slides with 85 % of that friction
         coefficient. <b>Steer</b> puts it into a fork that turns it from 1 s on. A run ends where the wheel lies flat,
         where it would lift off (N = 0), and where it jams while it slides.`,
       attempt: 'Which of the four bodies needs the most spin to stay up? Roll a coin of your own across the desk.',
