@@ -408,35 +408,24 @@ def test_a_heading_is_held_without_drift_by_the_rate_that_leads_to_the_next(libr
             beyond(b, 1e-6, "error, SI")
 
 
-# ---- the limits that it is ----
-
-
-def rising(errors: list[float]) -> float:
-    """The order of convergence between the last two of errors whose parameter rises tenfold."""
-    return float(np.log10(errors[-2] / errors[-1]))
-
-
-DRIVE = {"M_3": -6.0, "F_Y": 20.0, "F_Z": -40.0}
+# ---- the limit that it is, and model exchange ----
 
 
 def test_infinite_inertia_across_the_axle_is_its_limit(library: Library) -> None:
-    times = np.linspace(0, 1, 11)
+    times, load = np.linspace(0, 1, 11), {"M_3": -6.0, "F_Y": 20.0, "F_Z": -40.0}
     names = ("X_O", "Y_O", "omega_z", "lambda_x", "lambda_y", "lambda_3", "slip_x", "slip_y")
     road = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 2.0, "slip_y_start": 0.5, "theta_start": CAMBER}
-    want = guided(library, times, DRIVE, **road)
+    want = guided(library, times, load, **road)
 
     def error(times_J: float) -> float:
         heavy = dict.fromkeys(("J_x", "J_y"), 0.9 * times_J)
-        free = guided(library, times, DRIVE, **road, **heavy, **FREE)
+        free = guided(library, times, load, **road, **heavy, **FREE)
         return max(absolute_error(free[name], want[name]) for name in names)
 
     errors = [error(times_J) for times_J in (1e4, 1e5, 1e6)]
     within(errors[-1], 1e-3, "outputs of a million J_x, SI")
-    within(abs(rising(errors) - 1), 2e-3, "order of convergence less 1")
+    within(abs(np.log10(errors[-2] / errors[-1]) - 1), 2e-3, "order of convergence less 1")
     beyond(error(1), 1.0, "outputs of the usual J_x, SI")
-
-
-# ---- power, rates, model exchange ----
 
 
 def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) -> None:
