@@ -168,6 +168,21 @@ def test_a_sliding_wheel_lifts_off_and_lies_flat_at_the_references_instants(libr
     beyond(abs((rolling.end or 3.0) - ended.time), 1e-4, "instant of the wheel that rolls, s")
 
 
+def test_inputs_that_change_at_every_step_of_a_slide_cost_a_short_step_each(library: Library) -> None:
+    def evaluations_per_change(every: float) -> float:
+        changes = 50
+        with library.wheel() as wheel:
+            wheel.start(**{**ROAD, "theta_start": 1.4, "phi_dot_start": -20.0, "slip_x_start": 9.0})
+            for k in range(changes):
+                assert wheel.set(M_brake=5.0 + k % 2) == OK and wheel.step_to(every * (k + 1)) == OK
+            count, mode = wheel.get("n_rhs", "contact_mode")
+        assert mode == SLIDING
+        return count / changes
+
+    within(evaluations_per_change(1e-3), 40, "evaluations at each step of 1 ms")
+    beyond(evaluations_per_change(2e-2), 40, "evaluations at each step of 20 ms")
+
+
 # ---- hard scenes ----
 
 
@@ -246,6 +261,15 @@ def test_a_jam_where_a_slip_is_about_to_end_is_a_jam(library: Library, tolerance
     within(abs(run.end - ended.time), 1e-9, "instant of the jam, s")
     other = simulate(library, scene, [0.0, 0.2], tolerance, formulation=formulation, mu_slide=2.4)
     beyond(abs((other.end or 0.2) - ended.time), 1e-6, "instant with less friction, s")
+
+
+def test_a_slip_that_falls_at_forty_times_g_ends_at_the_references_instants(library: Library) -> None:
+    rod = {"J_x": 0.02, "J_y": 0.01, "J_z": 0.01, "s": 0.02, "mu_max": 0.33, "mu_slide": 0.3}
+    turn = {"theta_start": 1.6, "phi_start": -2.0, "theta_dot_start": 1.0, "phi_dot_start": 2.0}
+    scene = Scene({**rod, **turn}, 0.493)
+    assert len(moments(scene)) > 10
+    assert modes_missed(library, scene, 1e-7) == 0
+    assert modes_missed(library, scene, 1e-7, shift=1e-5) > 0
 
 
 ROADS = [{"mu_max": 0.1}, {"mu_max": 0.45}, {"mu_max": 0.2, "mu_slide": 0.15}, {"slope": 0.3}, {"slope_direction": pi}]
