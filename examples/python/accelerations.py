@@ -24,5 +24,5 @@ for name, state, law, drive in (
     now = dynamics(REDUCED, scene(wheel, law, sigma=-1, moment=(0, 0, drive)), state)
     print(
         f"{name:9s} theta_ddot = {now.theta_ddot:8.4f} rad/s2, omega_z_dot = {now.omega_z_dot:8.4f} rad/s2, "
-        f"N = {now.lambda_[2]:8.4f} N, tau = {now.tau:7.4f} N m"
+        f"N = {now.lambda_[2]:8.4f} N, tau = {now.tau + 0.0:7.4f} N m"
     )

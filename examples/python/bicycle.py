@@ -29,6 +29,7 @@ REAR = 85.0, (0.3, 0.9), (9.2, 11.0, 2.8, 2.4)  # frame with rider: m; centre of
 FORK = 4.0, (0.9, 0.7), (0.05892, 0.06, 0.00708, -0.00756)
 RIDES, STEP = {3.0: 2.8, 5.0: 4.0, 7.0: 15.0}, 0.004  # seconds by speed, m/s; step of the method, s
 SLOWEST, FASTEST = 3.0, 8.0  # m/s, between which the limits of stability are searched
+LIES = 1.0  # rad, a lean that ends a ride
 SMALL = 3e-6  # rad/s, a push whose square, the share of nonlinear terms, is as small as the rounding of theta over it
 # The published linear equations M q'' + v C_1 q' + (g K_0 + v^2 K_2) q = 0 of q = (lean, steer), both to the right.
 # They hold for the numbers above, whatever g is.
@@ -152,8 +153,9 @@ def accelerations(q, u):
 
 
 def ride(v, push, times):
-    """Lean, steer and their rates; `push`: the rate of leaning to the right at the start, rad/s. By the Runge-Kutta
-    method in equal steps: with a small push, an adaptive one would follow the rounding of theta."""
+    """Lean, steer and their rates; `push`: the rate of leaning to the right at the start, rad/s; NaN from where
+    the bicycle lies. By the Runge-Kutta method in equal steps: with a small push, an adaptive one would follow the
+    rounding of theta."""
 
     def rates(y):
         return np.concatenate([y[7:], accelerations(y[:7], y[7:])])
@@ -162,6 +164,9 @@ def ride(v, push, times):
     y[[2, 4, 7, 8, 11]] = WHEELS[0][0], pi / 2, v, -WHEELS[0][0] * push, push
     found = [y]
     for span in np.diff(times):
+        if not abs(y[4] - pi / 2) < LIES:
+            found.append(np.full(14, np.nan))
+            continue
         n = ceil(span / STEP - 1e-9)
         h = span / n
         for _ in range(n):
