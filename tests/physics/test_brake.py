@@ -88,3 +88,15 @@ def test_at_the_corners_where_it_lets_go_and_presses_again_a_brake_ends_a_step_w
 
     within(error(half), 64 * 40 * EPSILON, "spin, rad/s")
     beyond(error(1.01 * half), 1e-8, "spin off that under a brake with a wider gap, rad/s")
+
+
+def test_a_brake_that_was_let_off_is_out_of_use_where_the_spin_changes_its_sign(library: Library) -> None:
+    """The partner: it hardly presses."""
+    found = []
+    for left in (0.0, 1e-9):
+        with library.wheel(logging=True).start(**{**UPRIGHT, "phi_dot_start": -1.0}, M_brake=1.0) as w:
+            w.by(0.1).put(M_brake=left, M_3=20.0).take_messages()
+            (before,) = w.get("n_events")
+            beyond(w.by(1.0).get("omega_z")[0], 1, "omega_z, rad/s")
+            found.append((w.get("n_events")[0] - before, bool(w.texts())))
+    assert found == [(0, False), (1, True)]
