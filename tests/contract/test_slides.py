@@ -112,3 +112,18 @@ def test_a_slide_that_the_loads_begin_at_the_start_counts_from_the_end_of_initia
         assert w.get("contact_mode", "n_events") == [slides, 0]
         assert w.exitInitializationMode() == OK
         assert w.get("n_events") == [slides] and len(w.texts()) == slides
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_slip_that_passes_zero_where_the_road_cannot_hold_the_wheel_begins_anew_and_is_counted(wheel, side) -> None:
+    """F_Y alone, against the slip at first, is beyond mu_max N; on a carrier nothing tips the wheel."""
+    force = -80.0 * side
+    w = wheel(logging=True).start(**UPRIGHT, guided=True, mu_max=0.3, mu_slide=0.25, slip_y_start=side, F_Y=force)
+    t = 1 / ((80.0 + 0.25 * WEIGHT) / 20)
+    w.take_messages()
+    (before,) = w.get("n_events")
+    assert w.by(0.9 * t).get("n_events") == [before] and w.texts() == []
+    (slip,) = w.by(1.0).get("slip_y")
+    beyond(-side * slip, 1, "slip to the other side, m/s")
+    assert w.get("n_events") == [before + 1]
+    assert w.said().endswith("the wheel slides in another direction.")

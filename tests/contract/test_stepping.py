@@ -7,7 +7,7 @@ import pytest
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import COUNTERS, ERROR, OK, FMU2Wheel
-from wheelfmu.truth.scenes import KINDS, PULLED, SCENES
+from wheelfmu.truth.scenes import AT_REST, KINDS, PULLED, SCENES
 from wheelfmu.truth.sliding import ROAD, SLIDES, THROWN
 
 SECONDS = [float(t) for t in range(1, 11)]
@@ -214,6 +214,13 @@ def test_each_start_of_bdf_counts_a_jacobian(wheel):
         counts.append(w.put(M_3=0.1 * k).by(0.1).get("n_jac", "n_restarts"))
     assert min(later[0] - before[0] for before, later in pairwise(counts)) > 0
     assert [later[1] - before[1] for before, later in pairwise(counts)] == [1] * 7  # the partner: they are starts
+
+
+def test_a_wheel_that_leaves_the_layer_in_which_it_rested_needs_no_jacobian_any_more(wheel):
+    w = wheel().start(**AT_REST, s=0.03, friction_law=2, omega_s=1e-3).by(1.0)
+    (resting,) = w.get("n_jac")
+    (left,) = w.put(M_3=50.0).by(0.5).get("n_jac")
+    assert (w.by(2.0).get("n_jac"), resting > 0) == ([left], True)
 
 
 def test_only_cvode_starts_anew_at_each_communication_point_of_a_course_and_counts_it(wheel):

@@ -31,6 +31,9 @@ def test_states_are_read_back_to_the_bit(library: Library) -> None:
         assert (wheel.x() == ODD).all() and wheel.get(*STATES) == ODD.tolist()
         wheel.place(0.3, np.nextafter(ODD, np.inf))
         assert (wheel.x() != ODD).all()
+        for x in np.random.default_rng(1).uniform(0.3, 2.8, (50, 8)):
+            wheel.place(0.3, x)
+            assert wheel.get(*STATES) == x.tolist()
 
 
 @pytest.mark.parametrize("theta", [1.1, 1e-4, 1e-5, 1.1e-7, np.pi - 1.1e-7])

@@ -10,7 +10,7 @@ from support.bounds import EPSILON, absolute_error, beyond, relative_error, with
 
 from wheelfmu.fmu.paths import ROOT
 
-from .solving import EVENT, FAILED, harmonic
+from .solving import EVENT, FAILED, STEPPED, harmonic
 
 # The table of DOP853 (dormand_prince.hpp) is SciPy's, row by row; stage 12 is the end of the step.
 MATRICES = {"a": (*DOP853.A, DOP853.B, *DOP853.A_EXTRA), "e": (DOP853.E3, DOP853.E5), "d": DOP853.D}
@@ -154,3 +154,48 @@ def test_each_of_two_failures_has_its_own_reason(solver, method):
         assert one.run(3.0) == FAILED and one.failure == "the rates of the states are not finite"
         one.restart(0.0, [1.0])
         assert one.run(2.0, 100_000) == FAILED and one.failure.startswith("the step size became too small: ")
+
+
+def test_the_counts_are_those_of_the_calls_through_every_start(solver, method):
+    """A quick function comes with each evaluation of the rates; neither function comes near zero."""
+    calls = {"rhs": 0, "roots": 0}
+
+    def counted(name):
+        def far(_t, _y):
+            calls[name] += 1
+            return 10.0
+
+        return far
+
+    one = solver(method, quick=counted("rhs"), each_step=counted("roots"))
+    for t in (0.0, 1.5, 1.5, 4.0):
+        one.restart(t, [*harmonic(t), *[0.0] * 6])
+        for _ in range(3):
+            assert one.step() == STEPPED
+            assert (one.now.rhs, one.now.roots) == (calls["rhs"], calls["roots"])
+    assert min(calls.values()) >= 12
+
+
+def test_a_start_knows_nothing_of_the_error_of_the_step_before_it(solver):
+    """A step that is cut short leaves the size that is wanted as it was, whatever its own error is."""
+    found = []
+    for cut in (None, 1e-3):
+        one = solver("runge_kutta")
+        one.run(1.0)
+        if cut:
+            one.restart(2.0, [*harmonic(2.0), *[0.0] * 6])
+            one.limit_first_step(cut)
+            one.step()
+        one.restart(3.0, [*harmonic(3.0), *[0.0] * 6])
+        assert one.step() == one.step() == STEPPED
+        found.append(one.now[:2])
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize(("longest_step", "takes_over"), [(6e-5, False), (1e-3, True)])
+def test_collocation_takes_over_only_where_the_motion_allows_much_longer_steps(solver, longest_step, takes_over):
+    """The decay allows DOP853 width / 4.5."""
+    one = solver("runge_kutta", "steep", longest_step=longest_step)
+    for _ in range(40):
+        assert one.step() == STEPPED
+    assert (one.now.known - one.now.begin > 1.01e-4 / 4.5) == takes_over
