@@ -7,7 +7,7 @@ static void print(const char* name, const WheelScene* scene, const double* y) {
   WheelDynamics now;
   wheel_reduced.dynamics(scene, y, &now);
   printf("%-9s theta_ddot = %8.4f rad/s2, omega_z_dot = %8.4f rad/s2, N = %8.4f N, tau = %7.4f N m\n", name,
-         now.theta_ddot, now.omega_z_dot, now.lambda[2], now.tau);
+         now.theta_ddot, now.omega_z_dot, now.lambda[2], now.tau + 0.0); /* no -0 */
 }
 
 int main(void) {

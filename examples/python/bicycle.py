@@ -28,6 +28,7 @@ WHEELS = (0.3, 2.0, 0.0603, 0.12), (0.35, 3.0, 0.1405, 0.28)  # radius, m, J_x, 
 REAR = 85.0, (0.3, 0.9), (9.2, 11.0, 2.8, 2.4)  # frame with rider: m; centre of mass; I_xx, I_yy, I_zz, I_xz, z down
 FORK = 4.0, (0.9, 0.7), (0.05892, 0.06, 0.00708, -0.00756)
 RIDES, STEP = {3.0: 2.8, 5.0: 4.0, 7.0: 15.0}, 0.004  # seconds by speed, m/s; step of the method, s
+SLOWEST, FASTEST = 3.0, 8.0  # m/s, between which the limits of stability are searched
 SMALL = 3e-6  # rad/s, a push whose square, the share of nonlinear terms, is as small as the rounding of theta over it
 # The published linear equations M q'' + v C_1 q' + (g K_0 + v^2 K_2) q = 0 of q = (lean, steer), both to the right.
 # They hold for the numbers above, whatever g is.
@@ -184,7 +185,7 @@ def eigenvalues(v, of=ride, dt=0.04):
     return np.sort_complex(np.log(np.linalg.eigvals(y[:, 1:] @ np.linalg.pinv(y[:, :-1])).astype(complex)) / dt)
 
 
-def limits(low=3.0, high=8.0):
+def limits(low=SLOWEST, high=FASTEST):
     """Speeds at which the largest real part of the eigenvalues changes its sign, m/s."""
     tried = np.arange(low, high + 0.5)  # 1 m/s apart
     largest = [eigenvalues(v)[-1].real for v in tried]
@@ -214,6 +215,7 @@ if __name__ == "__main__":
         lean, steer = np.abs(found - exact).max(1) / np.abs(exact).max(1)
         print(f"At {v:g} m/s, off the benchmark, over the largest value: lean {lean:.0e}, steer {steer:.0e}.")
     print("Eigenvalues at 5 m/s:", ", ".join(f"{x:.6g}".removesuffix("+0j") for x in eigenvalues(5.0)))
-    print("Stability changes at", ", ".join(f"{v:.5f}" for v in limits()) or "no speed", "m/s.")
+    changes = ", ".join(f"{v:.5f}" for v in limits()) or f"no speed from {SLOWEST:g} to {FASTEST:g}"
+    print("Stability changes at", changes, "m/s.")
     if len(sys.argv) > 1:
         draw(sys.argv[1])

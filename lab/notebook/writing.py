@@ -1,27 +1,38 @@
 """Runs wheel.ipynb and keeps the outputs of its cells: text and pictures, without run times and progress bars.
 
-`write` keeps them in the notebook. The site shows it, and a test runs it again and compares.
+`write` keeps them in the notebook. The site shows it, and a test runs it again and compares. nbformat is imported where
+it is used: that takes seconds.
 """
 
 from __future__ import annotations
 
 import os
-
-import nbformat
-from nbclient import NotebookClient
+from typing import TYPE_CHECKING
 
 from wheelfmu.fmu.paths import ROOT
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
 
 NOTEBOOK = ROOT / "lab" / "notebook" / "wheel.ipynb"
 KEPT = ("text/plain", "image/png")
 
 
-def executed(fmu: str = "../../wheel.fmu", results: str = "../../results") -> nbformat.NotebookNode:
+def kept() -> NotebookNode:
+    """The notebook as it is."""
+    import nbformat
+
+    return nbformat.read(NOTEBOOK, as_version=4)
+
+
+def executed(fmu: str = "../../wheel.fmu", results: str = "../../results") -> NotebookNode:
     """The notebook with fresh outputs; fmu, results: in the place of ../../wheel.fmu and ../../results.
 
     As without Jupyter's widgets, of which no file keeps what they show.
     """
-    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    from nbclient import NotebookClient
+
+    notebook = kept()
     cells = [(cell, cell.source) for cell in notebook.cells]
     for cell, source in cells:
         here = source.replace("../../wheel.fmu", fmu).replace("../../results", results)
@@ -40,7 +51,7 @@ def executed(fmu: str = "../../wheel.fmu", results: str = "../../results") -> nb
     return notebook
 
 
-def strip(output: nbformat.NotebookNode) -> nbformat.NotebookNode:
+def strip(output: NotebookNode) -> NotebookNode:
     """Words and pictures alone; where there is a picture, it is enough."""
     if "data" in output:
         kinds = [kind for kind in KEPT if kind in output.data]
@@ -50,5 +61,7 @@ def strip(output: nbformat.NotebookNode) -> nbformat.NotebookNode:
 
 
 def write() -> None:
+    import nbformat
+
     nbformat.write(executed(), NOTEBOOK)
     print(f"Ran {NOTEBOOK.relative_to(ROOT)}.")

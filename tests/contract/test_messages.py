@@ -71,7 +71,7 @@ def warnings(library: Library) -> Iterator[Case]:
 
 
 def friction(library: Library) -> Iterator[Case]:
-    """Instants of the reference (physics/test_friction_events.py, physics/test_sliding.py)."""
+    """Instants of the reference (physics/test_scenes.py, physics/test_sliding.py)."""
     stick, release = started(library, s=0.03).to(START + 1.4).texts()
     yield stick, f"t = {START + 1.225520636} s: stick, omega_z is held at zero."
     yield release, f"t = {START + 1.329817} s: release, omega_z becomes negative."

@@ -115,11 +115,3 @@ def test_rates_under_a_stiff_regularized_law_are_as_exact(wheel: Make, width: tu
     within(rows.error(found, judge), 3e-10, "rates off the complex step, relative")
     rows.scenes["friction"]["omega_s"] *= 1 + 1e-6
     beyond(rows.error(rows.rates(wheel), judge), 1e-7, "rates with another width, relative")
-
-
-def test_the_multibody_form_gives_the_rates_of_the_reduced_form(wheel: Make, law: int) -> None:
-    rows = Rows(law)
-    reduced = rows.rates(wheel)
-    within(rows.error(rows.rates(wheel, formulation=3), reduced), 1e-9, "rates of both forms, relative")
-    rows.motions["theta_dot"] += 1e-6
-    beyond(rows.error(rows.rates(wheel, formulation=3), reduced), 1e-7, "rates at another theta_dot, relative")

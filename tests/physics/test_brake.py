@@ -7,7 +7,6 @@ axle turns is J = J_z + m R^2. SI units.
 
 import numpy as np
 import pytest
-from numpy.polynomial import Polynomial
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.truth.closed_forms import rolling_inertia
@@ -68,26 +67,6 @@ def test_it_lets_go_at_the_closed_forms_instant_and_leaves_nothing_behind_when_i
     run = library.simulate([0.0, 0.1, 0.5, 1.0], 1e-10, off, **{**UPRIGHT, "phi_dot_start": -5.0})
     within(abs(run["omega_z"][1] - (-5.0 + 20.0 * 0.1 / J)), 64 * 5 * EPSILON, "omega_z, rad/s")
     assert (run["omega_z"][2:] == run["omega_z"][1]).all() and (run["tau"][2:] == 0).all()
-
-
-@pytest.mark.parametrize("other", [0.515, 0.53])
-def test_at_the_corners_where_it_lets_go_and_presses_again_a_brake_ends_a_step_whatever_else_varies(library, other):
-    """Between them all moments are polynomials, which a step integrates exactly: here a parabola that is below zero for
-    0.02 s, and one of F_X whose extreme follows."""
-    away, half = 0.5, 0.01
-
-    def error(width: float) -> float:
-        braking, pushing = (Polynomial([-at, 1]) ** 2 for at in (away, other))
-        braking, pushing = 300 * (braking - half**2), 30 * pushing
-        inputs = {"M_brake": tuple(braking.coef), "F_X": tuple(pushing.coef)}
-        start = {**UPRIGHT, "guided": True, "phi_dot_start": -40.0}
-        run = library.simulate([0.0, 1.0], 1e-4, Schedule(((0.0, inputs),)), **start)
-        moment, force = braking.integ(), pushing.integ()
-        gone = moment(away - width) - moment(0) + moment(1) - moment(away + width) - R * (force(1) - force(0))
-        return abs(run["omega_z"][-1] - (-40.0 + gone / J))
-
-    within(error(half), 64 * 40 * EPSILON, "spin, rad/s")
-    beyond(error(1.01 * half), 1e-8, "spin off that under a brake with a wider gap, rad/s")
 
 
 def test_a_brake_that_was_let_off_is_out_of_use_where_the_spin_changes_its_sign(library: Library) -> None:

@@ -1,5 +1,5 @@
 """A wheel on its carrier (`guided`), which holds heading and tilt, or steers and leans it: closed forms, its own
-reference, jumps of the rates, springs and inertias that rise towards it, power, rates, model exchange.
+reference, jumps of the rates, inertias that rise towards it, model exchange.
 
 R = r_0 + r, rho = r_0 + r sin(theta), eta = r cos(theta), I = J_z + m rho^2. Along e1 v = -rho omega_z and
 I omega_z' = M_3 + tau - rho F_1 while it grips and theta stands; N = m g - F_Z then. Straight motions that friction
@@ -7,17 +7,16 @@ stops, or in which it slides: test_straight.py. SI units.
 """
 
 from collections.abc import Callable, Sequence
-from math import cos, pi, radians, sin, sqrt
+from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
 from scipy.integrate import simpson, solve_ivp
 from support.bounds import EPSILON, absolute_error, beyond, within
 
-from wheelfmu.fmu.driver import OK, STATES, Value, shifted
+from wheelfmu.fmu.driver import STATES, Value, shifted
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library, Run
-from wheelfmu.truth.motion import run as attempt
 from wheelfmu.truth.reference.carried import Piece
 from wheelfmu.truth.scenes import GENERAL, carried
 from wheelfmu.truth.schedule import Schedule
@@ -66,15 +65,6 @@ def held(psi_dot: float, theta_dot: float = 0.0, end: float = 1.0, **loads: floa
 # ---- closed forms: the axle keeps its direction ----
 
 
-@pytest.mark.parametrize("spin", [10.0, 100.0, 500.0])
-def test_a_fast_spin_costs_the_multibody_form_no_more_steps(library: Library, spin: float) -> None:
-    """The motion is no faster, and neither are the constraints."""
-    runs = [guided(library, [0, 2], None, 1e-8, s=0.003, phi_dot_start=-spin, method=4, formulation=f) for f in (2, 3)]
-    costs = [run.counters["n_rhs"] for run in runs]
-    within(costs[1] / costs[0], 1.5, "evaluations over those of the reduced form")
-    within(abs(runs[1]["X_O"][-1] / runs[0]["X_O"][-1] - 1), 1e-11, "way of the formulations apart, relative")
-
-
 @pytest.mark.parametrize("theta", [pi / 2, CAMBER, 2.3])
 def test_loads_move_it_along_its_heading_and_the_carrier_takes_the_rest(
     library: Library, formulation: int, theta: float
@@ -96,15 +86,6 @@ def test_loads_move_it_along_its_heading_and_the_carrier_takes_the_rest(
 
     within(error(), 1e-9, "reactions, N, N m, angles, rad, and rates")
     beyond(error(**FREE), 1.0, "reactions and angles of the wheel that is not guided")
-
-
-def test_it_leans_at_rest_on_the_moment_of_its_weight(library: Library) -> None:
-    run = guided(library, [0.0, 60.0], theta_start=CAMBER, **STOPPED)
-    within(absolute_error(run["M_guide_1"], M * G * R_0 * cos(CAMBER)), 64 * 10 * EPSILON, "M_guide_1, N m")
-    assert not run["M_guide_2"].any() and not run["omega_z"].any()
-    free = library.simulate([0.0, 0.5], theta_start=CAMBER, **STOPPED)
-    assert not free["M_guide_1"].any() and not free["M_guide_2"].any()
-    beyond(absolute_error(free["theta"], CAMBER), 0.1, "tilt of the wheel that is not guided, rad")
 
 
 @pytest.mark.parametrize("method", [1, 4], ids=["unfolded", "stepped"])
@@ -161,57 +142,6 @@ def test_in_a_steady_turn_the_road_gives_m_v_psi_dot_and_the_carrier_turns_the_a
     beyond(error(1.001), 1e-2, "the same with 0.1 % more")
 
 
-def test_a_side_force_at_the_centre_of_a_turning_wheel_loads_road_and_carrier(
-    library: Library, formulation: int
-) -> None:
-    """As of a vehicle's wheel, whose link pushes it into the turn: the road bears the vehicle, the carrier its arm."""
-    turn, push = 0.5, -800.0  # rad/s, N to the left
-
-    def error(arm: float) -> float:
-        with library.wheel() as w:
-            w.start(**ROLLS, formulation=formulation, psi_dot_guide=turn, F_Y=push)
-            road = M * V * turn - push
-            want = np.array([road, -J_Z * V / R * turn - arm * road])
-            return absolute_error(np.array(w.get("lambda_y", "M_guide_1")), want)
-
-    within(error(R), 64 * 1000 * EPSILON, "side force of the road, N, and moment of the carrier, N m")
-    beyond(error(R_0), 10.0, "the same with the arm to the ring")
-
-
-def test_on_a_cambered_circle_forces_and_moment_are_those_of_a_rigid_body_that_turns_about_the_vertical(
-    library: Library, formulation: int
-) -> None:
-    """The wheel's angular momentum and that of its mass turn with psi: H' = psi_dot e_Z x H, J_x = J_y."""
-    turn, spin = 0.8, -12.0
-    rho, eta = R_0 + TUBE * sin(CAMBER), TUBE * cos(CAMBER)
-    omega = np.array([0.0, turn * sin(CAMBER), spin])
-    v = eta * omega[1] - rho * spin
-    left, N = M * v * turn, M * G
-    up = np.array([0.0, sin(CAMBER), cos(CAMBER)])
-    gyroscopic = np.cross(turn * up, np.array([J_X, J_X, J_Z]) * omega)
-    ground = np.array([0.0, cos(CAMBER) * left + sin(CAMBER) * N, -sin(CAMBER) * left + cos(CAMBER) * N])
-    moment = gyroscopic - np.cross([0.0, -rho, -eta], ground)
-    start = {"theta_start": CAMBER, "phi_dot_start": spin - turn * cos(CAMBER), "formulation": formulation}
-    run = driven(library, [held(turn)], [0.0, 0.5, 1.0], **start)
-    want = {"v_x": v, "v_y": 0.0, "omega_z": spin, "lambda_y": left, "lambda_3": N, "lambda_x": 0.0}
-    want |= {"M_guide_1": moment[0], "M_guide_2": moment[1], "tau": 0.0}
-    within({name: absolute_error(run[name], value) for name, value in want.items()}, 1e-10, "forces, speeds, moments")
-    beyond(abs(gyroscopic[0]), 10.0, "gyroscopic moment, N m")
-
-
-def test_a_heading_that_gathers_speed_asks_for_the_inertia_across_the_axle(library: Library, formulation: int) -> None:
-    """Upright: M_guide_2 = I_22 psi_ddot, where I_22 turns with phi: at rest here."""
-    start = {"phi_start": 0.3, "phi_dot_start": 0.0, "formulation": formulation}
-    gathers = [Piece(0.0, 1.0, (0.0, 2.0), (0.0,))]
-    I_22 = 0.7 * sin(0.3) ** 2 + 1.2 * cos(0.3) ** 2
-    at_rest = driven(library, gathers, [0.0, 1e-3], **start, J_x=0.7, J_y=1.2)
-    within(abs(at_rest["M_guide_2"][0] - 2 * I_22), 1e-12, "moment about e2, N m")
-    run = driven(library, gathers, [0.0, 0.5, 1.0], **start)
-    within(absolute_error(run["M_guide_2"], 2 * J_X), 1e-12, "moment about e2, N m")
-    within(absolute_error(run["psi_ddot"], 2.0), 1e-12, "psi_ddot, rad/s2")
-    within(absolute_error(run["psi"], run.t**2), 1e-13, "heading, rad")
-
-
 def test_a_turn_slides_out_where_it_needs_more_than_the_road_gives(library: Library) -> None:
     """At m v psi_dot = mu_max N, sideways and to the right of a left turn."""
     road = {"mu_max": 0.3, "mu_slide": 0.25}
@@ -223,25 +153,6 @@ def test_a_turn_slides_out_where_it_needs_more_than_the_road_gives(library: Libr
     within(absolute_error(np.hypot(run["lambda_x"], run["lambda_y"])[2:], 0.25 * M * G), 1e-9, "friction, N")
     wide = driven(library, [grows], times, **ROLLS, mu_max=0.31, mu_slide=0.25)
     assert wide["contact_mode"].tolist() == [0, 0, 0, 1]
-
-
-def test_the_straight_wheel_in_its_turning_frame_takes_the_same_path(library: Library) -> None:
-    """It is pushed by the Coriolis forces m v_y psi_dot and -m v_x psi_dot, as its path is laid by hand."""
-    load = {"F_Z": (-2943.0,)}
-    ramp = Piece(0.0, 1.0, (0.0, 0.5), (0.0,), load)
-    turn = Piece(1.0, 2.0, (0.5,), (0.0,), load)
-    stop = Piece(2.0, 3.0, (0.5,), (0.0,), load | {"M_brake": (300.0,)})
-    run = driven(library, [ramp, turn, stop], [0.0, 2.0, 3.0], **ROLLS)
-    stopped = 2 + V / R * (J_Z + M * R**2) / 300.0
-    way = np.zeros(2)
-    for begin, end in ((0.0, 1.0), (1.0, 2.0), (2.0, stopped)):
-        times = np.linspace(begin, end, 2001)
-        psi = times**2 / 4 if end == 1 else 0.25 + (times - 1) / 2
-        v = V * (stopped - times) / (stopped - 2) if begin == 2 else np.full_like(times, V)
-        way += [simpson(v * np.cos(psi), x=times), simpson(v * np.sin(psi), x=times)]
-    within(absolute_error([run["X_O"][-1], run["Y_O"][-1]], way), 1e-8, "place where it stops, m")
-    within(absolute_error(way, [20.005257, 7.048587]), 1e-6, "place by hand, m")
-    assert run["omega_z"][-1] == 0 and run["friction_mode"][-1] == 0
 
 
 def test_after_many_turns_the_path_has_all_its_digits(library: Library, formulation: int) -> None:
@@ -412,14 +323,6 @@ def test_a_jump_that_relieves_the_ground_takes_nothing_from_the_brake_that_holds
     beyond(spins[1], 5e-3, "spin after the same jump under a brake of 2 N m, rad/s")
 
 
-def test_friction_of_a_jump_stops_the_spin_and_does_not_turn_it_back(library: Library) -> None:
-    assert after_jump(library, "friction stops it", 2, 0.0)["omega_z"] == 0.0
-    start, (_, theta_dot), _ = JUMPS["friction stops it"]
-    lift = M * R_0 * cos(start["theta_start"]) * theta_dot  # N s
-    whole = start["s"] * lift / (J_Z + M * (R_0 + TUBE * sin(start["theta_start"])) ** 2)
-    beyond(whole, 0.02, "spin that the friction of the whole ramp would give, rad/s")
-
-
 @pytest.mark.parametrize("slip", [1.0, -1.0])
 def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_leaves_its_side(library, slip) -> None:
     """Across its heading, so that the road hardly turns it: the pressure of the swing takes some 0.07 rad/s."""
@@ -510,127 +413,24 @@ def test_a_heading_is_held_without_drift_by_the_rate_that_leads_to_the_next(libr
             beyond(b, 1e-6, "error, SI")
 
 
-# ---- the limits that it is ----
-
-
-def rising(errors: list[float]) -> float:
-    """The order of convergence between the last two of errors whose parameter rises tenfold."""
-    return float(np.log10(errors[-2] / errors[-1]))
-
-
-DRIVE = {"M_3": -6.0, "F_Y": 20.0, "F_Z": -40.0}
+# ---- the limit that it is, and model exchange ----
 
 
 def test_infinite_inertia_across_the_axle_is_its_limit(library: Library) -> None:
-    times = np.linspace(0, 1, 11)
+    times, load = np.linspace(0, 1, 11), {"M_3": -6.0, "F_Y": 20.0, "F_Z": -40.0}
     names = ("X_O", "Y_O", "omega_z", "lambda_x", "lambda_y", "lambda_3", "slip_x", "slip_y")
     road = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 2.0, "slip_y_start": 0.5, "theta_start": CAMBER}
-    want = guided(library, times, DRIVE, **road)
+    want = guided(library, times, load, **road)
 
     def error(times_J: float) -> float:
         heavy = dict.fromkeys(("J_x", "J_y"), 0.9 * times_J)
-        free = guided(library, times, DRIVE, **road, **heavy, **FREE)
+        free = guided(library, times, load, **road, **heavy, **FREE)
         return max(absolute_error(free[name], want[name]) for name in names)
 
     errors = [error(times_J) for times_J in (1e4, 1e5, 1e6)]
     within(errors[-1], 1e-3, "outputs of a million J_x, SI")
-    within(abs(rising(errors) - 1), 2e-3, "order of convergence less 1")
+    within(abs(np.log10(errors[-2] / errors[-1]) - 1), 2e-3, "order of convergence less 1")
     beyond(error(1), 1.0, "outputs of the usual J_x, SI")
-
-
-LED = ("X_O", "Y_O", "psi", "theta", "omega_z", "M_guide_1", "M_guide_2")
-
-
-def sprung(library: Library, stiffness: float) -> np.ndarray:
-    """LED of the free wheel after 1 s, held by damped springs to a heading and a tilt that move; their moments."""
-    wheel = exchange(library, **{**UPRIGHT, "theta_start": CAMBER, "phi_dot_start": -10.0}, **DRIVE)
-    index = {name: k for k, name in enumerate(STATES)}
-    damping = 2 * sqrt(stiffness)
-
-    def moments(t: float, x: np.ndarray) -> tuple[float, float]:
-        psi, theta = 0.2 * t**3, CAMBER + 0.1 * t**3
-        lean = stiffness * (theta - x[index["theta"]]) + damping * (0.3 * t**2 - x[index["theta_dot"]])
-        yaw = stiffness * (psi - x[index["psi"]]) + damping * (0.6 * t**2 - x[index["psi_dot"]])
-        return lean, yaw
-
-    def rate(t: float, x: np.ndarray) -> np.ndarray:
-        assert wheel.set(**dict(zip(("M_1", "M_2"), moments(t, x), strict=True))) == OK
-        wheel.place(t, x)
-        return wheel.derivatives()
-
-    x = solve_ivp(rate, (0, 1), wheel.x(), "LSODA", rtol=1e-9, atol=1e-12).y[:, -1]
-    return np.array([*(x[index[name]] for name in LED[:5]), *moments(1.0, x)])
-
-
-def test_springs_that_steer_a_free_wheel_lead_to_it_as_they_stiffen(library: Library) -> None:
-    loads = {name: (value,) for name, value in DRIVE.items()}
-    course = Piece(0.0, 1.0, (0, 0, 0.6), (0, 0, 0.3), loads)
-    run = driven(library, [course], [0.0, 1.0], theta_start=CAMBER, phi_dot_start=-10.0)
-    want = np.array([run[name][-1] for name in LED])
-    errors = [np.abs(sprung(library, stiffness) - want) for stiffness in (1e4, 1e5, 1e6)]
-    for k, name in enumerate(LED):
-        within(abs(rising([error[k] for error in errors]) - 1), 0.1, f"order of {name} in the compliance less 1")
-    within(float(errors[-1][:5].max()), 1e-3, "apart at 1e6 N m/rad, SI")
-    within(float(errors[-1].max()), 1e-2, "moments apart at 1e6 N m/rad, N m")
-
-
-# ---- power, rates, model exchange ----
-
-
-@courses
-@surfaces
-def test_the_power_of_carrier_loads_slip_and_friction_changes_its_energy(library: Library, course, start, loads):
-    """That of a carrier at rest is zero, and so is that of M_1 and M_2."""
-    times = np.linspace(0, 0.5, 501)
-    run = driven(library, [Piece(0.0, 0.5, *course, loads)], times, **start)
-    force = {name: a + b * times for name, (a, b) in loads.items()}
-    omega_2 = run["psi_dot"] * np.sin(run["theta"])
-
-    def error(judged: float, slips: float = 1.0) -> float:
-        power = force["F_X"] * run["X_O_dot"] + force["F_Y"] * run["Y_O_dot"] + force["F_Z"] * run["Z_O_dot"]
-        power += force["M_1"] * run["theta_dot"] + force["M_2"] * omega_2 + force["M_3"] * run["omega_z"]
-        power += run["tau"] * run["omega_z"]
-        power += slips * (run["lambda_x"] * run["slip_x"] + run["lambda_y"] * run["slip_y"])
-        power += judged * (run["M_guide_1"] * run["theta_dot"] + run["M_guide_2"] * omega_2)
-        return abs(float(simpson(power, x=times)) - (run["E"][-1] - run["E"][0]))
-
-    within(error(1.0), 1e-8, "energy off the work, J")
-    if any(course[0]):
-        beyond(error(0.999), 1e-4, "energy off the work with 0.1 % less of the carrier's, J")
-    if "mu_slide" in start:
-        beyond(error(1.0, 0.0), 1.0, "energy off the work without the slip's, J")
-
-
-@surfaces
-def test_the_rates_of_the_carriers_moment_are_those_of_its_course(library: Library, start, loads) -> None:
-    h, names = 1e-4, ("M_guide_1", "M_guide_2")
-    inputs = Schedule(((0.0, loads),))
-    values = {**UPRIGHT, "guided": True, **start}
-    run = attempt(library, values, [0.0, 0.2 - 2 * h, 0.2 - h, 0.2, 0.2 + h, 0.2 + 2 * h], 1e-12, inputs, names)
-    for name in names:
-        before_2, before, _, after, after_2 = run[name][1:]
-        course = (8 * (after - before) - (after_2 - before_2)) / (12 * h)
-        within(abs(run[f"{name}_dot"][3] - course), 1e-9, f"rate of {name}, N m/s")
-        beyond(abs(course), 0.1, f"rate of {name} at all, N m/s")
-
-
-@surfaces
-def test_the_carriers_moment_answers_each_load_as_equilibrium_asks(library: Library, start, loads) -> None:
-    """By a moment across the axle: its negative; by another load: the finite change of what is read."""
-    names = ("F_X", "F_Y", "F_Z", "M_1", "M_2", "M_3")
-    with library.wheel() as w:
-        w.start(tolerance=1e-10, **{**UPRIGHT, "guided": True, **start}, M_3=-2.0)
-        slopes = w.jacobian(("M_guide_1", "M_guide_2"), names)
-        within(absolute_error(slopes[:, 3:5], -np.eye(2)), 64 * EPSILON, "derivative by M_1, M_2 off -1")
-        before = np.array(w.get("M_guide_1", "M_guide_2"))
-        for k, load in enumerate(names):
-            value = w.get(load)[0]
-            assert w.set(**{load: value + 1.0}) == OK
-            change = np.array(w.get("M_guide_1", "M_guide_2")) - before
-            within(absolute_error(change, slopes[:, k]), 64 * 60 * EPSILON, f"moments by {load}, N m")
-            assert w.set(**{load: value}) == OK
-        at_start = library.wheel().initializing(**{**UPRIGHT, "guided": True, **start})
-        assert not at_start.jacobian(("M_guide_1", "X_O_dot"), ("theta_dot_start", "psi_dot_start")).any()
 
 
 def test_a_solver_of_another_tool_moves_the_same_eight_states(library: Library) -> None:

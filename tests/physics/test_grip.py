@@ -14,8 +14,8 @@ from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.driver import ERROR, OK
 from wheelfmu.truth.closed_forms import circle, rolling_inertia
-from wheelfmu.truth.exchange import INDICATORS, exchange, loaded, no_inputs
 from wheelfmu.truth.exchange import Run as ExchangeRun
+from wheelfmu.truth.exchange import exchange, loaded, no_inputs
 from wheelfmu.truth.motion import Library, start_values
 from wheelfmu.truth.reference import Wheel
 from wheelfmu.truth.schedule import Schedule
@@ -107,12 +107,3 @@ def test_a_ground_that_pulls_gives_no_grip_however_little_of_it_is_needed(librar
     with loaded(library).new() as wheel:
         assert wheel.set(mu_max=0.5, F_Z=2 * weight, **rolling) == OK
         assert wheel.initialise() == ERROR and "mu_max = 0.5" in wheel.said()
-
-
-def test_the_indicator_of_grip_is_positive_and_constant_where_grip_is_not_checked(library: Library) -> None:
-    with exchange(library, **FAST) as free, exchange(library, mu_max=5.0, **FAST) as checked:
-        assert free.indicator("lost_grip") == 1.0 and INDICATORS.index("lost_grip") == 1
-        needed = checked.get("mu_required")[0]
-        N, weight = checked.get("lambda_3")[0], PAPER.m * PAPER.g
-        expected = (1 - (needed / 5.0) ** 2) * (N / weight) ** 2
-        within(abs(checked.indicator("lost_grip") - expected), 1e-10, "indicator of grip")

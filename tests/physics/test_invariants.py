@@ -8,7 +8,7 @@ from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.truth.closed_forms import linear_integrals
 from wheelfmu.truth.measure import constraint_drift
-from wheelfmu.truth.misprints import WHEEL, papers_start
+from wheelfmu.truth.misprints import papers_start
 from wheelfmu.truth.motion import Library
 from wheelfmu.truth.paper_transcription import FORMS, Paper, marched, paper_table
 from wheelfmu.truth.reference import Wheel
@@ -37,30 +37,17 @@ def test_no_formulation_can_leave_its_constraints(library: Library, formulation:
     within(velocity.max(), 64 * EPSILON, "velocity of the contact, m/s")
 
 
-# ---- (24) integrated with all twelve states, which drift: 100 s of the paper's free wheel ----
-
-
-def marched_to(form: type[Paper], step: float, end: float) -> tuple[float, float, np.ndarray]:
-    """|[B]{q_dot}| (largest entry, m/s), the height off the contact (m), the state."""
-    y = marched(form, WHEEL, papers_start(), step, round(end / step))
-    paper = form(WHEEL, y)
-    return float(np.abs(paper.slip).max()), float(np.abs(paper.height_error)), y
-
-
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_the_papers_twelve_states_lead_where_the_fmu_does(library: Library, form: type[Paper]) -> None:
+    """(24) integrated as the paper has it: plain, and stabilized."""
     run = library.simulate([0.0, 2.0], 1e-12, formulation=3)
     names = ("X_O", "Y_O", "Z_O", "psi", "theta", "phi")
     told = np.array([run[name][-1] for name in (*names, *(f"{name}_dot" for name in names))])
-    errors = [np.abs(marched_to(form, step, 2.0)[2] - told).max() for step in (0.01, 0.005)]
+
+    def error(step: float, **changes: float) -> float:
+        return float(np.abs(marched(form, paper_table(**changes), papers_start(), step, round(2 / step)) - told).max())
+
+    errors = [error(step) for step in (0.01, 0.005)]
     within(errors[1], 5e-5, "states apart, SI")
     within(errors[1] / errors[0], 0.1, "those of half the step over those of the whole")  # order 4: 1/16
-    beyond(np.abs(marched(form, paper_table(r=0.0501), papers_start(), 0.005, 400) - told).max(), 1e-4, "another r")
-
-
-def test_the_drift_of_24_falls_with_the_step_and_only_a_stabilized_one_does_not_grow(library: Library) -> None:
-    plain, tamed = ([marched_to(form, 0.02, end)[1] for end in (2.0, 8.0)] for form in FORMS.values())
-    beyond(plain[1] / plain[0], 3, "height that is lost in four times the time, plain")
-    within(tamed[1], plain[1] / 10, "height that is lost, stabilized, m")
-    finer = marched_to(Paper, 0.01, 8.0)[1]
-    within(finer / plain[1], 0.15, "height that is lost with half the step")
+    beyond(error(0.005, r=0.0501), 1e-4, "states of another r apart, SI")

@@ -1,24 +1,22 @@
-"""The wheel slides where grip ends, and grips again: balances, the independent reference, cost, endings, ice.
+"""The wheel slides where grip ends, and grips again: balances, the independent reference, cost, endings.
 
 Coulomb's law: grip up to mu_max N, then mu_slide N against the slip; R = r_0 + r. Straight: test_straight.py. SI.
 """
 
-from math import cos, degrees, hypot, pi, radians, sin
+from math import cos, hypot, pi, sin
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DISCARD, ERROR, OK
-from wheelfmu.truth import sliding
 from wheelfmu.truth.closed_forms import circle
 from wheelfmu.truth.errors import kind_errors
 from wheelfmu.truth.motion import Library, Run, start_values
 from wheelfmu.truth.reference import Wheel
-from wheelfmu.truth.reference.judge import carrier_axes, momenta
 from wheelfmu.truth.scenes import Scene
 from wheelfmu.truth.schedule import Schedule
-from wheelfmu.truth.sliding import HUB, ROAD, SLIDES, UPRIGHT, random_slide
+from wheelfmu.truth.sliding import ROAD, SLIDES, UPRIGHT, random_slide
 
 PAPER = Wheel()
 R = PAPER.r_0 + PAPER.r
@@ -72,25 +70,6 @@ def test_the_road_pushes_against_the_slip_with_mu_slide_N_or_holds_with_at_most_
     within((run["mu_required"][~slides] / scene.road.mu_max).max(initial=0.0), 1 + 1e-8, "mu_required over mu_max")
 
 
-@pytest.mark.parametrize("r", [0.0, 0.05])
-def test_with_hardly_any_friction_the_sliding_disc_keeps_its_momenta(library: Library, r: float) -> None:
-    """Vertical and axle angular momentum, horizontal momentum, energy (O'Reilly 1996), to mu times the weight."""
-    wheel = Wheel(r=r)
-
-    def change(mu: float, judged: Wheel = wheel) -> float:
-        throw = {"psi_dot_start": 1.5, "phi_dot_start": -3.0, "slip_x_start": 1.0, "slip_y_start": 2.0}
-        run = library.simulate(np.linspace(0, 1, 11), 1e-11, r=r, mu_max=0.5, mu_slide=mu, **throw)
-        assert (run["contact_mode"] == SLIDING).all()
-        p, L = momenta(judged, run)
-        _, _, e3 = carrier_axes(run["psi"], run["theta"])
-        kept = np.column_stack([p[:, :2], L[:, 2], np.sum(L * e3, axis=1), run["E"]])
-        return absolute_error(kept, kept[0])
-
-    within(change(1e-11), 1e-7, "change of momenta, N s, N m s, and energy, J")
-    beyond(change(1e-3), 1e-2, "change of those with a coefficient of 1e-3")
-    beyond(change(1e-11, Wheel(r=r, J_x=0.91, J_y=0.91)), 1e-3, "change of those judged by another inertia")
-
-
 # ---- the independent reference ----
 
 
@@ -124,19 +103,6 @@ def test_grip_is_lost_and_regained_at_the_references_instants(library: Library, 
     assert modes_missed(library, scene, 1e-7) == 0
     assert modes_missed(library, scene, 1e-7, shift=1e-5) == len(moments(scene))
     assert modes_missed(library, scene, 1e-7, mu_slide=scene.road.mu_slide * 0.999) > 0 or name == "locked"
-
-
-def test_the_papers_wheel_slides_twice_on_a_wet_road_and_in_every_swing_on_a_slippery_one(library: Library) -> None:
-    def slides(mu_max: float, mu_slide: float, until: int = 10) -> tuple[int, float]:
-        run = library.simulate(np.linspace(0, 10, 5001), mu_max=mu_max, mu_slide=mu_slide)
-        return int((np.diff(run["contact_mode"][: 500 * until]) == 1).sum()), float(run["E"][-1])
-
-    wet, slippery, dry = slides(0.45, 0.4), slides(0.3, 0.25, until=4), slides(0.49, 0.4)
-    swings = Scene({"mu_max": 0.3, "mu_slide": 0.25}).solved([0.0, 4.0]).contacts
-    assert (wet[0], slippery[0], dry[0]) == (2, sum(mode for _, mode in swings), 0)
-    within(abs(wet[1] - 66.557), 6e-4, "energy left on the wet road, by another derivation, J")
-    within(abs(slippery[1] - 32.6), 0.06, "energy left on the slippery road, by another derivation, J")
-    beyond(dry[1], 75, "energy left on the dry road, J")
 
 
 def test_random_wheels_on_random_roads_follow_the_reference(library: Library) -> None:
@@ -184,17 +150,6 @@ def test_friction_jams_a_wheel_that_it_rights_and_the_run_ends_there(library: Li
     within(abs(run.end - ended.time), 1e-6, "instant of the jam, s")  # N grows without bound there
     light = simulate(library, scene, [0.0, scene.duration], mu_slide=0.4, mu_max=0.4)  # below 2 sqrt(0.05 * 1.05)
     assert light.end is None
-
-
-def test_a_wheel_on_the_upright_side_of_the_jam_is_pushed_back(library: Library) -> None:
-    start = {**HUB, "theta_start": radians(88.0), "theta_dot_start": -2.0, "slip_y_start": -5.0}
-
-    def lean(mu: float) -> float:
-        run = library.simulate([0.0, 0.2], 1e-10, mu_max=mu, mu_slide=mu, **start)
-        return degrees(run["theta"][-1])
-
-    beyond(lean(0.8), 90, "lean after 0.2 s, degrees")
-    within(lean(0.1), 90, "lean with little friction, degrees")
 
 
 @pytest.mark.parametrize(("kind", "start"), [
@@ -308,20 +263,6 @@ def test_a_jam_where_a_slip_is_about_to_end_is_a_jam(library: Library, tolerance
     beyond(abs((other.end or 0.2) - ended.time), 1e-6, "instant with less friction, s")
 
 
-@pytest.mark.parametrize(("start", "brake"), [
-    ({"mu_max": 0.1, "mu_slide": 0.1, "s": 0.3, "omega_s": 1e-6}, 0.0),
-    ({"mu_max": 0.4, "mu_slide": 0.3, "omega_s": 1e-4}, 1e3),
-    ({"mu_max": 0.4, "mu_slide": 0.4, "omega_s": 1e-6}, 1e3),
-])  # fmt: skip
-def test_a_stiff_law_in_a_slide_is_solved_in_some_thousand_steps(library: Library, start: dict, brake: float) -> None:
-    braked = Schedule(((0.0, {"M_brake": brake}),))
-    held = library.simulate([0.0, 1.0], 1e-6, braked, **{**start, "omega_s": 1.0})
-    run = library.simulate([0.0, 1.0], 1e-6, braked, friction_law="regularized", **start)
-    assert (run["contact_mode"] == SLIDING).any()
-    within(run.counters["n_steps"], 2e4, "number of steps")
-    within(abs(run["theta"][-1] - held["theta"][-1]), start["omega_s"] + 1e-5, "lean off that under the exact law, rad")
-
-
 def test_a_slip_that_falls_at_forty_times_g_ends_at_the_references_instants(library: Library) -> None:
     rod = {"J_x": 0.02, "J_y": 0.01, "J_z": 0.01, "s": 0.02, "mu_max": 0.33, "mu_slide": 0.3}
     turn = {"theta_start": 1.6, "phi_start": -2.0, "theta_dot_start": 1.0, "phi_dot_start": 2.0}
@@ -329,17 +270,6 @@ def test_a_slip_that_falls_at_forty_times_g_ends_at_the_references_instants(libr
     assert len(moments(scene)) > 10
     assert modes_missed(library, scene, 1e-7) == 0
     assert modes_missed(library, scene, 1e-7, shift=1e-5) > 0
-
-
-def test_a_wheel_that_slides_and_grips_hundreds_of_times_is_counted_and_logged_each_time(library: Library) -> None:
-    """A motor that is switched on and off every 5 ms; the wheel grips again within each pause."""
-    torque = 1.05 * sliding.gripping_torque(PAPER, 0.45)
-    pieces = tuple((0.005 * k, {"M_3": 0.0 if k % 4 else -torque}) for k in range(400))
-    run = straight(library, [0.0, 2.0], Schedule(pieces))
-    said = [message for message in run.messages if "slide" in message or "sliding" in message]
-    assert run.counters["n_events"] >= 190
-    assert len(said) == run.counters["n_events"] and not any("another direction" in message for message in said)
-    within(run.counters["n_steps"] / run.counters["n_events"], 30, "steps per transition")
 
 
 ROADS = [{"mu_max": 0.1}, {"mu_max": 0.45}, {"mu_max": 0.2, "mu_slide": 0.15}, {"slope": 0.3}, {"slope_direction": pi}]
@@ -389,38 +319,3 @@ def test_a_start_with_slip_is_no_loss_of_grip(library: Library) -> None:
     with library.wheel(logging=True) as wheel:
         wheel.start(**ROAD, slip_x_start=1.0).by(0.01)
         assert wheel.texts() == [] and wheel.get("n_events", "contact_mode") == [0, SLIDING]
-
-
-ICE = [{"mu_max": 0.0}, {"mu_slide": 0.0, "mu_max": 0.0}]
-
-
-def speed_after(library: Library, before: float, *roads: dict[str, float], **start: float) -> float:
-    """Of O, braked for 0.2 s on each of the roads."""
-    with library.wheel() as wheel:
-        wheel.start(**{**UPRIGHT, **ROAD, "phi_dot_start": -40.0, **start}).to(before).put(M_brake=1e3)
-        for k, road in enumerate(roads, 1):
-            wheel.put(**road).to(before + 0.2 * k)
-        return float(wheel.get("X_O_dot")[0])
-
-
-@pytest.mark.parametrize("ice", ICE)
-@pytest.mark.parametrize("before", [0.0, 0.1])
-@pytest.mark.parametrize("start", [{}, {"slip_x_start": 2.0}, {"formulation": 3}], ids=str)
-def test_a_wheel_that_can_slide_has_no_friction_at_all_where_mu_max_becomes_zero(library, ice, before, start) -> None:
-    """As in the limit of small coefficients. On the road behind the ice it slows down as before it."""
-    free, least = 40 * R + start.get("slip_x_start", 0.0), speed_after(library, before, {"mu_max": 1e-9}, **start)
-    rolls = 0.4 * PAPER.g * before if "slip_x_start" in start else 0.0
-    within(abs(speed_after(library, before, ice, **start) - least), 1e-8, "speed off that on the least friction, m/s")
-    within(abs(least + rolls - free), 2 * 1e-9 * PAPER.g * 0.2, "speed lost on the least friction, m/s")
-    slower = speed_after(library, before, ice, ROAD, **start)
-    within(abs(least - slower - 0.4 * PAPER.g * 0.2), 1e-8, "speed lost behind the ice, m/s")
-
-
-def test_the_paper_s_wheel_loses_no_energy_on_ice(library: Library) -> None:
-    with library.wheel() as wheel:
-        before = wheel.start(**ROAD).to(0.3).get("E")[0]
-        wheel.put(mu_max=0.0).to(0.5)
-        within(abs(wheel.get("E")[0] / before - 1), 1e-10, "change of the energy, relative")
-        assert wheel.get("contact_mode", "lambda_1", "lambda_2") == [SLIDING, 0.0, 0.0]
-        wheel.put(mu_max=0.01).to(0.7)
-        beyond(abs(wheel.get("E")[0] / before - 1), 1e-7, "energy on mu_max = 0.01, relative")

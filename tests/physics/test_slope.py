@@ -1,79 +1,43 @@
-"""A road that slopes, or begins to: standing, braked and uphill against closed forms.
+"""A road that slopes, or begins to: a wheel at rest, and any other that goes on from its state on the next road.
 
 The axes are the road's, Z across it; the weight is m g (-sin a cos b, -sin a sin b, -cos a) for a slope a that rises
 towards b. Upright wheels head along X (psi = 0), R = r_0 + r. Straight down: test_straight.py. SI units.
 """
 
-from math import atan, cos, pi, sin
+from math import asin, atan, cos, pi, sin
 
 import numpy as np
 import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.truth.cases import random_scene
-from wheelfmu.truth.closed_forms import rolling_inertia
 from wheelfmu.truth.exact_motions import UPRIGHT
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.reference import Wheel
 
 R, WEIGHT = 0.35, 20 * 9.81
 REST = {**UPRIGHT, "phi_dot_start": 0.0}
 
 
-def parked(library: Library, slope: float, seconds: float) -> float:
-    """X_O of an upright wheel with a brake of 20 N m; M_1 and M_2, every 50 ms, keep it upright and straight."""
-    with library.wheel() as wheel:
-        wheel.set(slope=slope, **REST)
-        wheel.initialise(1e-10)
-        wheel.set(M_brake=20.0)
-        for k in range(round(seconds / 0.05)):
-            tilt, tilt_rate, heading, turn = wheel.get("theta", "theta_dot", "psi", "psi_dot")
-            wheel.put(M_1=-120 * (tilt - pi / 2) - 20 * tilt_rate, M_2=-50 * heading - 20 * turn).to((k + 1) * 0.05)
-        return wheel.get("X_O")[0]
-
-
-def test_a_brake_holds_exactly_up_to_its_capacity_and_lets_go_beyond(library: Library) -> None:
-    steepest = np.arcsin(20.0 / (R * WEIGHT))
-    within(abs(parked(library, steepest * (1 - 1e-9), 600.0)), 64 * EPSILON**2, "creep, m")  # in ten minutes
-    beyond(-parked(library, steepest * (1 + 1e-6), 5.0), 2e-6, "way beyond the capacity, m")
-
-
-def on_a_hill(library: Library, slope: float, **values: float) -> np.ndarray:
-    """X_O after 0, 1 and 2 s on a hill that begins after 0.5 s on a level road, at 2.8 m/s."""
-    with library.wheel() as wheel:
-        wheel.start(tolerance=1e-10, **{**UPRIGHT, "phi_dot_start": -8.0, **values}).to(0.5)
-        foot = wheel.put(slope=slope).get("X_O")
-        return np.array([*foot, *wheel.to(1.5).get("X_O"), *wheel.to(2.5).get("X_O")])
-
-
-WAYS = {"free": {}, "may slide": {"mu_max": 0.9, "mu_slide": 0.8}, "Adams": {"method": 2}}
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_a_wheel_that_meets_a_hill_rolls_up_slows_down_and_comes_back(library: Library, formulation: int, way) -> None:
-    """By g sin a / (1 + J_z / (m R^2)) from the foot on; it stands still after 1.27 s."""
-    since, slowing = np.array([0.0, 1.0, 2.0]), R**2 * WEIGHT * sin(0.4) / rolling_inertia(Wheel())
-    expected = 8.0 * R * (0.5 + since) - slowing * since**2 / 2
-    assert expected[2] < expected[1]
-    within(np.abs(on_a_hill(library, 0.4, formulation=formulation, **WAYS[way]) - expected).max(), 1e-11, "X_O, m")
-    steeper = on_a_hill(library, 0.4 * (1 + 1e-8), formulation=formulation, **WAYS[way])
-    beyond(np.abs(steeper - expected).max(), 1e-9, "X_O on a steeper hill, m")
-
-
-def test_a_parked_wheel_stays_while_the_road_tilts_and_rolls_where_it_tilts_too_far(library: Library) -> None:
-    """On a slope from the start on, and step by step, up to the capacity of s; then beyond it, downhill whichever side
-    that is."""
-    steepest = atan(0.03 / R)
-    stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), s=0.03, **REST)
+@pytest.mark.parametrize(
+    ("hold", "steepest"),
+    [({"s": 0.03}, atan(0.03 / R)), ({"M_brake": 20.0}, asin(20.0 / (R * WEIGHT)))],
+    ids=["rolling resistance", "brake"],
+)
+def test_a_parked_wheel_stays_while_the_road_tilts_and_rolls_where_it_tilts_too_far(
+    library: Library, hold: dict[str, float], steepest: float
+) -> None:
+    """On a slope from the start on, and step by step, up to the capacity; then beyond it, downhill whichever side that
+    is."""
+    stays = library.simulate([0.0, 5.0], slope=steepest * (1 - 1e-9), **hold, **REST)
     assert (stays["omega_z"] == 0).all()
     for direction, sense in ((0.0, 1), (pi, -1)):
         with library.wheel() as wheel:
-            wheel.start(s=0.03, **REST)
+            wheel.start(**hold, **REST)
             for k, share in enumerate((0.3, 0.9, 1 - 1e-9, 0.0, 1 - 1e-9)):
                 wheel.put(slope=share * steepest, slope_direction=direction).to(k + 1.0)
             assert wheel.get("omega_z", "friction_mode") == [0.0, 0]
             X_O, Y_O, psi = wheel.get("X_O", "Y_O", "psi")
-            within(abs(X_O), abs(psi * Y_O) + EPSILON**2, "creep, m")  # it tips by the rounding of 90 deg
+            within(abs(X_O), abs(psi * Y_O) + 64 * EPSILON**2, "creep, m")  # it tips by the rounding of 90 deg
             wheel.put(slope=steepest * (1 + 1e-6)).to(7.0)
             assert wheel.get("friction_mode") == [sense] and -sense * wheel.get("X_O")[0] > 0
 

@@ -129,8 +129,9 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Patched]:
     count = int(re.search(r'numberOfEventIndicators="(\d+)"', text)[1]) + len(events)
     description.write_text(numbered(with_event_indicators(text, count)), encoding="utf-8")
     sundials = os.environ.get("WHEEL_SUNDIALS_SOURCE") or next((ROOT / "build" / "sundials").glob("*/vendor"))
-    options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_UNITY_BUILD": "ON", "Python3_EXECUTABLE": sys.executable}
-    options |= {"WHEEL_SUNDIALS_SOURCE": sundials}
+    options = {"CMAKE_UNITY_BUILD": "ON", "Python3_EXECUTABLE": sys.executable, "WHEEL_SUNDIALS_SOURCE": sundials}
+    # It is built twice: with assertions, and not optimized as a whole.
+    options |= {"CMAKE_BUILD_TYPE": "RelWithDebInfo", "CMAKE_CXX_FLAGS_RELWITHDEBINFO": "-O1"}
     configure = [*CMAKE, "-S", root, "-B", root / "build", *(f"-D{name}={value}" for name, value in options.items())]
     make = ["cmake", "--build", root / "build", "--target", "fmu", "wheel_equations", "-j2"]
     fmu = root / "build" / "wheel.fmu"

@@ -1,5 +1,5 @@
 """Slides at the extremes: hardly any friction to 20, light and heavy wheels, thin discs and fat tori, fast spins,
-tiny slips; cut inputs.
+tiny slips.
 
 What must hold of any slide without inputs: the energy falls, the road pushes against the slip with mu_slide N, both
 formulations take the same way. SI; a wheel's own time is sqrt((r_0 + r) / g).
@@ -11,12 +11,10 @@ import numpy as np
 import pytest
 from robustness.sweep import similar
 from support.bounds import EPSILON, absolute_error, beyond, within
-from support.playing import play
 
 from wheelfmu.fmu.driver import DISCARD, OK
 from wheelfmu.truth.motion import Library, Run
 from wheelfmu.truth.motion import run as attempt
-from wheelfmu.truth.sliding import random_slide
 
 TOLERANCE = 1e-8
 THROWN = {"slip_x_start": -1.5, "slip_y_start": 0.8, "phi_dot_start": -6.0}
@@ -73,27 +71,6 @@ def test_an_extreme_slide_loses_energy_obeys_coulomb_and_is_the_same_in_both_for
         apart = absolute_error(runs[1][column][:last], runs[0][column][:last]) / size
         bound = (100 if name in ("near flat", "rod") else 10) * TOLERANCE
         within(apart, bound, f"{column} of the formulations apart, relative")
-
-
-# ---- inputs that are cut ----
-
-
-def test_communication_points_inside_a_slide_change_no_more_than_the_tolerance(wheel) -> None:
-    """Random wheels on random roads under polynomials, with 20 random cuts."""
-    random, slides = np.random.default_rng(10), 0
-    for _ in range(12):
-        scene = random_slide(random)
-        pieces = [(0.0, {name: random.normal(0, size, 3) for name, size in (("F_X", 20), ("F_Y", 20), ("M_3", 9))})]
-        ends = []
-        for count in (0, 20):
-            w = wheel(logging=True).start(**scene.start, formulation=2)
-            if play(w, pieces, 0.6, random.uniform(0, 0.6, count)) != OK:
-                break
-            ends.append(np.array(w.get(*STATES)))
-            slides += sum("slid" in sentence for sentence in w.sentences)
-        if len(ends) == 2:
-            within(absolute_error(*ends) / max(1.0, np.abs(ends[0]).max()), TOLERANCE, "states apart, relative")
-    beyond(slides, 5, "number of slides")
 
 
 # ---- random wheels, every kind of extreme at once ----

@@ -86,19 +86,6 @@ def test_passage_and_rest_follow_the_closed_form_at_every_width(library: Library
     within(max(np.abs(np.diff(np.log(costs)))), np.log(3), "logarithm of the evaluations, neighbouring widths apart")
 
 
-def test_a_tighter_tolerance_is_no_less_exact_where_a_rolling_wheel_passes_the_law(library: Library) -> None:
-    start = {"s": 0.0191, "theta_start": 1.5996, "phi_dot_start": -2.0432, "psi_dot_start": 1.7306}
-    law: Values = {**start, "theta_dot_start": -0.1968, "friction_law": "regularized", "omega_s": 0.01}
-    times, way = np.linspace(0, 5, 51), lambda done: np.column_stack([done["X_O"], done["Y_O"]])
-    exact = way(run(library, law, times, 1e-12))
-    grown = absolute_error(way(run(library, law | {"phi_dot_start": -2.0432 + 1e-7}, times, 1e-12)), exact) / 1e-7
-    for tolerance in (1e-6, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9):
-        off = absolute_error(way(run(library, law, times, tolerance)), exact)
-        within(off / tolerance / grown, 10, f"error over tolerance {tolerance} and growth")
-    other = absolute_error(way(run(library, law | {"omega_s": 0.0101}, times, 1e-9)), exact)
-    beyond(other / 1e-6 / grown, 10, "that of a width one per cent larger")
-
-
 KINDS = ("rolls", "leans", "slides", "steered", "braked", "braked slide")
 
 
@@ -224,15 +211,6 @@ def test_a_slide_under_a_narrow_law_is_that_under_the_exact_law(library: Library
     beyond(max(others), bound, "error of a wide law / range")
 
 
-def test_evaluations_do_not_grow_with_stiffness(wheel) -> None:
-    def evaluations(omega_s: float, tolerance: float = 1e-8) -> int:
-        law = {"friction_law": "regularized", "omega_s": omega_s, "tolerance": tolerance}
-        return wheel().start(**FRICTION, **law).to(10.0).get("n_rhs")[0]
-
-    within(evaluations(1e-9) / evaluations(1e-5), 1.5, "growth of the evaluations over four powers of ten")
-    beyond(evaluations(1e-9, 1e-11) / evaluations(1e-5), 1.5, "growth with the tolerance too")
-
-
 def evaluations_to_and_fro(wheel, **law: str | float) -> int:
     """Of an upright wheel that a moment turns back twenty times."""
     w = wheel().start(theta_start=np.pi / 2, s=0.01, keep_contact=True, tolerance=1e-8, **law)
@@ -282,45 +260,6 @@ def test_a_law_that_becomes_stiff_inside_a_step_costs_what_bdf_costs_on_any_grid
         within((steps - count) / bdf[0], 1.5, "steps over those of BDF")  # an input that varies cuts at each point
         within(absolute_error(found, bdf[1:]), 1e-4, "motion off that of BDF, rad/s, rad")
     beyond(absolute_error(end(factor=1.01)[1:], found), 1e-6, "motion off that of a stronger brake")
-
-
-RESTS = {  # omega_z comes to rest in the layer: braked, by friction alone, against a torque
-    "braked": {"s": 0.003, "M_brake": 20.0},
-    "friction": {"s": 0.1},
-    "torque": {"s": 0.003, "M_brake": 20.0, "M_3": 7.0},
-}
-
-
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
-@pytest.mark.parametrize("rest", RESTS)
-def test_a_rest_costs_about_the_same_at_every_width(library: Library, rest: str, tolerance: float) -> None:
-    start = {"guided": True, "theta_start": np.pi / 2, "friction_law": 2, **RESTS[rest]}
-    widths = 10.0 ** np.arange(-9, 1.01, 0.5)
-    costs = [run(library, {**start, "omega_s": float(w)}, [0, 10], tolerance).counters["n_rhs"] for w in widths]
-    ratios = [max(pair) / min(pair) for pair in zip(costs, costs[1:], strict=False)]
-    within(max(ratios), 3, "cost over that of a neighbour")
-
-
-def test_the_multibody_form_solves_a_narrow_law_as_the_reduced_one_does(library: Library) -> None:
-    """Random wheels that roll, slide, are held and driven; the spin is a state, not a sum that rounding decides."""
-    random, apart, others = np.random.default_rng(12), [], []
-    for _ in range(60):
-        mu, tolerance = random.uniform(0.1, 0.8), float(10 ** -random.uniform(4.5, 12))
-        rates = {"psi_dot_start": random.normal(0, 2), "theta_dot_start": random.normal(), "phi_dot_start": 0.0}
-        start = {"theta_start": random.uniform(0.7, 2.4), **rates, "s": 10 ** random.uniform(-4, -1)}
-        start |= {"J_x": 0.8, "J_z": 1.6, "M_3": random.normal(0, 5), "M_brake": random.uniform(0, 20)}
-        start |= {"mu_max": mu, "mu_slide": 0.8 * mu} if random.random() < 0.5 else {}
-        law = {"friction_law": 2, "omega_s": 10 ** random.uniform(-11, -8)}
-        values = {name: float(value) for name, value in start.items()} | law
-        runs = [run(library, values | {"formulation": f}, [0, 0.5], tolerance) for f in (3, 2)]
-        assert all(done.status <= OK + 1 or done.end is not None for done in runs), (values, tolerance)
-        within(max(done.counters["n_rhs"] for done in runs), 2e4, "evaluations")
-        if runs[0].end is None and runs[1].end is None:
-            states = [np.array([done[name][-1] for name in ("X_O", "Y_O", "theta", "psi")]) for done in runs]
-            apart.append(np.abs(states[0] - states[1]).max() / tolerance)
-            others.append(np.abs(states[0] - [runs[1][name][0] for name in ("X_O", "Y_O", "theta", "psi")]).max())
-    within(float(np.median(apart)), 1, "formulations apart over the tolerance, median")
-    beyond(float(np.median(others)), 1e-2, "motion, median")
 
 
 @pytest.mark.parametrize("seed", [41, 64, 172, 184, 477, 1169])

@@ -30,6 +30,7 @@ AT_ONCE = ("--disable-gpu-compositing", "--disable-gpu-rasterization", "--disabl
 LARGEST = 4 << 30  # bytes that a test may take, many times what one needs
 COMPONENTS = ("diagrams", "examples", "release")  # of the product, not the core
 BESIDE = {"vehicles": "examples"}  # whose tests share a process with those of another, and its builds
+LONGEST = ("hostile place", "examples", "lesson", "diagrams", "recipes", "studies")  # groups, by their computing time
 
 
 def component(path: Path) -> str:
@@ -71,6 +72,18 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     """With --dist loadgroup the tests of a component share a process, and with it a browser or a cluster."""
     if name := component(item.path):
         item.add_marker(pytest.mark.xdist_group(name))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """With --dist loadgroup the longest groups begin first, and tests without a group fill the processes at the end."""
+
+    def rank(item: pytest.Item) -> int:
+        marker = item.get_closest_marker("xdist_group")
+        name = marker.args[0] if marker else ""
+        return LONGEST.index(name) if name in LONGEST else len(LONGEST) + (not marker)
+
+    if getattr(config.option, "loadgroup", False):
+        items.sort(key=rank)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

@@ -63,7 +63,7 @@ export const KINDS = {
   load: curve(
       'wheel load N', 'N', 0, ['lambda_3'], 'Wheel load', ([N]) => [N], {fits: (wheel) => moves(wheel, 'lambda_3')}),
   carrier: curve(
-      'M_guide e_1, dashed e_2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
+      'M_guide,1, dashed M_guide,2', 'N m', 1, ['M_guide_1', 'M_guide_2'],
       'Moment of the wheel carrier on the wheel along e1, and dashed along e2,', (both) => both,
       {fits: (wheel) => moves(wheel, 'M_guide_1') || moves(wheel, 'M_guide_2')}),
   energy: curve('energy E', 'J', 2, ['E'], 'Total energy', ([E]) => [E]),
@@ -77,11 +77,11 @@ export const KINDS = {
       {band: true}),
   path: plane(
       'path from above', ['m', 'm'], ['X_O', 'Y_O', 'psi', 'theta'],
-      'Path of the contact point on the ground, from above', (values, {parameters: {r_0}}) => contactOf(r_0, ...values),
+      'Path of the contact point on the road, from above', (values, {parameters: {r_0}}) => contactOf(r_0, ...values),
       {even: true}),
   phase: plane(
-      'rate of θ over θ', ['°', '°/s'], ['theta', 'theta_dot'],
-      'Phase portrait: the rate of the tilt over the tilt. Without friction one closed curve',
+      'rate of θ in °/s over θ', ['°', '°/s'], ['theta', 'theta_dot'],
+      'Phase portrait: the rate of θ over θ. Without rolling resistance one closed curve',
       (values) => values.map((value) => value * DEGREES)),
   circle: {
     form: 'circle',

@@ -86,7 +86,7 @@ class Diagram {
     Object.assign(pen, {textAlign: 'center', textBaseline: 'top'});
     for (const tick of across.ticks) {
       const text = fixed(tick, across.digits) + (unit && tick === across.ticks.at(-1) ? ` ${unit}` : '');
-      pen.fillText(text, Math.min(this.x(tick), this.width - 14), this.height - 15);
+      pen.fillText(text, Math.min(this.x(tick), this.width - pen.measureText(text).width / 2), this.height - 15);
     }
   }
 
@@ -349,8 +349,13 @@ function arrow(pen, [x, y], [dx, dy], strokeStyle, name) {
   pen.fill();
   Object.assign(pen, {textAlign: 'left', textBaseline: 'middle'});
   const within = Math.min(Math.max(y + dy + 10 * uy, 7), pen.canvas.clientHeight - 7);  // of the diagram
-  write(pen, name, x + dx + 7 + 3 * ux, within, 12);
+  pen.font = '12px system-ui, sans-serif';
+  const aside = ux < -0.3 ? -7 - pen.measureText(name).width : 7 + 3 * ux;
+  write(pen, name, x + dx + aside, within, 12);
 }
+
+/** A force in newtons, of any wheel. */
+const newtons = (force) => fixed(force, force < 0.1 ? 4 : force < 10 ? 2 : 0);
 
 /** The friction circle: the road's force, forward up and left to the left, and the direction of the slip. */
 class Circle extends Diagram {
@@ -375,7 +380,7 @@ class Circle extends Diagram {
     pen.stroke();
     pen.setLineDash([]);
     Object.assign(pen, {fillStyle: strokeStyle, textAlign: 'left', textBaseline: 'middle'});
-    write(pen, `${name} = ${fixed(radius, radius < 10 ? 2 : 0)} N`, x + rim + 8, y + side * rim, 12);
+    write(pen, `${name} = ${newtons(radius)} N`, x + rim + 8, y + side * rim, 12);
   }
 
   draw(t) {
@@ -407,7 +412,7 @@ class Circle extends Diagram {
     }
     arrow(pen, origin, [tip[0] - origin[0], tip[1] - origin[1]], colour('--force'), 'road');
     const force = Math.hypot(at('lambda_x'), at('lambda_y'));
-    this.values.textContent = `${fixed(force, force < 10 ? 2 : 0)}`;
+    this.values.textContent = newtons(force);
   }
 }
 

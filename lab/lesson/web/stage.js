@@ -43,6 +43,8 @@ export class Stage {
     this.controls.listenToKeyEvents({addEventListener: (kind, act) => canvas.addEventListener(kind, keys(act))});
     this.road = new THREE.Group();  // what is given in the road's axes: ground and wheels
     const surface = new THREE.MeshPhongMaterial({color: '#fff', shininess: 0, specular: '#000'});
+    // Tracks lie 1 mm above: at a distance the rounding of depth is more.
+    Object.assign(surface, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4});
     this.ground = new THREE.Mesh(new THREE.PlaneGeometry(GROUND, GROUND), surface);
     this.ground.receiveShadow = true;
     this.road.add(this.ground);

@@ -58,7 +58,7 @@ export function stepsOf() {
       start: {lean: 0.5, spin: slower},
       controls: ['push', 'spin'],
       diagrams: ['lean'],
-      text: (wheel) => `A wheel of ${m} kg, shaped as a torus, touches the ground at one point and does not slide there.
+      text: (wheel) => `A wheel of ${m} kg, shaped as a torus, touches the road at one point and does not slide there.
         So its spin of ${spin(wheel).toFixed(2)} rad/s times its radius of ${(r_0 + r).toFixed(2)} m is its speed,
         ${Math.abs(at(wheel, 0)('v_x')).toFixed(2)} m/s. Half a degree of lean is enough: at ${leans(wheel, 5)} s it
         leans by 5°, and goes on to ${lean(wheel)}°. Not every wheel does. The next steps show why.`,
@@ -71,7 +71,7 @@ export function stepsOf() {
       picture: 'precession',
       diagrams: ['lean', 'path'],
       eye: 'behind',
-      text: (wheel) => `The weight tips the wheel: its moment ${M} about the contact points along e<sub>1</sub>. The
+      text: (wheel) => `The weight tips the wheel: about the contact, its moment ${M} points along e<sub>1</sub>. The
         rolling wheel has an angular momentum ${L} along its axle. M acts across L, so it does not make L longer: it
         adds ${dL} at its tip and turns it, and with it the axle (the ring: ${
           GHOST} s ahead). The wheel turns towards its lean, runs
@@ -95,8 +95,8 @@ export function stepsOf() {
       text: (wheel) => {
         const {tips, rights} = wheel.perRadian;
         return `A moment that turns L does not tip the wheel. For a small lean, each radian of it brings two moments. One
-          tips the wheel: m&nbsp;g&nbsp;r<sub>0</sub> = ${tips.toFixed(1)} N m. The turn of L takes up the
-          other, which so rights the wheel: (J<sub>z</sub> + m R²)(J<sub>z</sub>/J<sub>x</sub>) ω² = ${
+          tips the wheel: m&nbsp;g&nbsp;r<sub>0</sub> = ${tips.toFixed(1)} N m. The other
+          is what turning L takes from it, and so it rights the wheel: (J<sub>z</sub> + m R²)(J<sub>z</sub>/J<sub>x</sub>) ω² = ${
             (rights / spin(wheel) ** 2).toFixed(1)} ω² N m, with R = r<sub>0</sub> + r. The first does not depend on
           the spin, the second grows with its square.`;
       },
@@ -113,7 +113,8 @@ export function stepsOf() {
       eye: 'behind',
       text: (slow, fast) =>
           `Both moments are equal at ω<sub>crit</sub> = ${limit.toFixed(2)} rad/s. Above it the turn rights
-        more than the weight tips: the faster wheel sways by ${lean(fast)}°. Below it the lean grows until it is no
+        more than the weight tips: the faster wheel never leans by more than ${
+              lean(fast)}°. Below it the lean grows until it is no
         longer small: the slower one leans by ${lean(slow)}°. The mass cancels, its distribution does not.`,
       attempt: 'Start with more lean: above which initial lean does the faster one, too, lean by more than 20°?',
       ask: {
@@ -134,7 +135,7 @@ export function stepsOf() {
       text: (wheel) =>
           `Far too slow to stay up, it comes down to a lean of ${lean(wheel)}°, turns fast about the vertical,
         and rises to its 15° again: nothing takes energy away. Every half swing is the one before, turned and mirrored,
-        so the rate of the tilt over the tilt is one closed curve, traced again and again.`,
+        so the rate of θ = 90° − lean, over θ, is one closed curve, traced again and again.`,
       attempt: 'Change the spin: each motion has a closed curve of its own.',
       ask: {
         text: `The paper's wheel: 15° of lean and only 2 rad/s, too little to stay up; no rolling resistance. Draw into
@@ -151,7 +152,7 @@ export function stepsOf() {
       eye: 'abreast',
       text: ({table, phases: {sticks: [[begin]], transitions}}) =>
           `A real road and a real tyre give way a little. Here all of that is one length: the force ${N} of the
-        ground acts s = 0.03 m ahead of the contact. So it has a moment s N about the axle, against the spin. At ${
+        road acts s = 0.03 m ahead of the contact. So it has a moment s N about the axle, against the spin. At ${
               begin.toFixed(2)} s the spin
         is used up. From then on N moves only as far as it takes to <b class="stick">hold</b> the spin at zero; where that takes
         more than s N (the band), the wheel is released. In ${table.end.toFixed(0)} s it is held, released or reversed
@@ -212,7 +213,7 @@ export function stepsOf() {
           ${way.toFixed(1)} m, decelerated by μ<sub>slide</sub> g = ${
             (wheel.parameters.mu_slide * g).toFixed(2)} m/s², however hard it is braked.`;
       },
-      attempt: 'Brake with 50 N m: the force stays within the outer circle, the wheel rolls on, and it stops sooner.',
+      attempt: 'Brake with 53 N m: the force stays within the outer circle, the wheel rolls on, and it stops sooner.',
     },
     {
       title: 'Backspin',

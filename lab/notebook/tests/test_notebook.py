@@ -1,25 +1,31 @@
 """The notebook is kept with what its cells give: they run from the first to the last, and give that again. Its lesson
 is true: the linear solution is the wheel's own for small leans, and each solution of an exercise gives its numbers."""
 
+from __future__ import annotations
+
 import contextlib
 import io
 import re
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
-import nbformat
 import numpy as np
 import pytest
 from support.bounds import beyond, relative_error, within
 
-from lab.notebook.writing import NOTEBOOK, executed
+from lab.notebook.writing import NOTEBOOK, executed, kept
 from wheelfmu.fmu.paths import ROOT
 from wheelfmu.truth.closed_forms import critical_spin
 from wheelfmu.truth.scenes import PAPER
 
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
 
-def printed(notebook: nbformat.NotebookNode) -> list[str]:
+
+def printed(notebook: NotebookNode) -> list[str]:
     """The texts that the cells give, with nine digits, for the last ones depend on the machine; a line per picture."""
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     texts = [output.get("text") or output["data"].get("text/plain", "a picture") for output in outputs]
@@ -27,7 +33,7 @@ def printed(notebook: nbformat.NotebookNode) -> list[str]:
 
 
 def test_the_notebook_keeps_what_its_cells_give_and_nothing_of_the_machine(fmu_path: Path, tmp_path: Path) -> None:
-    words, fresh = (printed(book) for book in (nbformat.read(NOTEBOOK, 4), executed(str(fmu_path), str(tmp_path))))
+    words, fresh = (printed(book) for book in (kept(), executed(str(fmu_path), str(tmp_path))))
     assert words == fresh, "run ./scripts/notebook --write"
     assert words.count("a picture") == 7 and "nan" not in "".join(words)
     assert f"{critical_spin(PAPER):.4f} rad/s" in "".join(words)
@@ -41,7 +47,7 @@ def lesson(fmu_path: Path) -> dict[str, object]:
     mpl.use("Agg")
     names: dict[str, object] = {}
     with contextlib.chdir(NOTEBOOK.parent), contextlib.redirect_stdout(io.StringIO()):
-        for cell in nbformat.read(NOTEBOOK, as_version=4).cells:
+        for cell in kept().cells:
             if cell.cell_type == "code" and "study.run" not in cell.source:
                 exec(cell.source.replace("../../wheel.fmu", str(fmu_path)), names)
     plt.close("all")
@@ -73,17 +79,20 @@ def test_the_linear_lean_of_the_lesson_is_the_wheels_for_small_leans(lesson, sha
     beyond(apart(0.1), 1e-3, "linear solution off a wheel that starts with 6 deg, of the largest lean")
 
 
-SOLUTIONS = re.findall(
-    r"\*\*(\d)\. .*?<details><summary>Solution</summary>\n(.*?)```python\n(.*?)```\n\n</details>",
-    "".join(cell.source for cell in nbformat.read(NOTEBOOK, as_version=4).cells if "Exercises" in cell.source),
-    re.DOTALL,
-)
+@cache
+def solutions() -> list[tuple[str, str, str]]:
+    """Number, words and code of each exercise's."""
+    return re.findall(
+        r"\*\*(\d)\. .*?<details><summary>Solution</summary>\n(.*?)```python\n(.*?)```\n\n</details>",
+        "".join(cell.source for cell in kept().cells if "Exercises" in cell.source),
+        re.DOTALL,
+    )
 
 
 @pytest.mark.parametrize("number", "1234567")
 def test_every_exercise_has_a_hidden_solution_that_gives_its_numbers(lesson, number: str) -> None:
-    assert [found for found, *_ in SOLUTIONS] == list("1234567")
-    ((_, words, code),) = (found for found in SOLUTIONS if found[0] == number)
+    assert [found for found, *_ in solutions()] == list("1234567")
+    ((_, words, code),) = (found for found in solutions() if found[0] == number)
     with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.chdir(NOTEBOOK.parent):
         exec(code, dict(lesson))
     values = np.array(re.findall(r"-?\d+\.\d+(?:e-?\d+)?", printed.getvalue()), dtype=float)

@@ -11,7 +11,7 @@ from wheelfmu.fmu.paths import ROOT
 NEEDS = ("test", "check")
 FOLDERS = ("contract", "equations", "exchange", "orbit", "solver")
 FILES = (
-    *(f"physics/test_{name}.py" for name in ("brake", "friction_events", "slope", "symmetries_fmu")),
+    *(f"physics/test_{name}.py" for name in ("brake", "slope", "symmetries_fmu", "zero_as_a_limit")),
     *(f"robustness/test_{name}.py" for name in ("allocations", "bounded_events", "silent_faults", "stability_law")),
 )
 # Limits of the paths and the size of a library without gcov, and a deadline that instrumented code may miss.

@@ -30,9 +30,10 @@ def needs(given: Namespace) -> list[str]:
 
 
 def tests(workers: int, *words: str, on: tuple[str, ...] = (), build: str = "release", **variables: str) -> list[str]:
-    """Words that run tests. Those of a group (xdist_group) run in turn in one process, and share what they prepare."""
+    """Words that run tests. Those of a group (xdist_group) run in turn in one process, and share what they prepare;
+    groups begin in the order of tests/support/fixtures.py."""
     built = {"WHEEL_BUILD": str(ROOT / "build" / build), **processes.SAFE, **variables}
-    pytest = processes.python("pytest", "-q", "-n", workers, "--dist", "loadgroup", *words)
+    pytest = processes.python("pytest", "-q", "-n", workers, "--dist", "loadgroup", "--no-loadscope-reorder", *words)
     return ["env", *(f"{name}={value}" for name, value in built.items()), *on, *pytest]
 
 
@@ -54,20 +55,18 @@ def main(given: Namespace) -> None:
     step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
     processes.side_by_side(RELEASE, *(processes.command(*words) for words in (("build", "asan"), ("tidy",), ("lint",))))
 
-    step("all tests; beside them, under sanitizers, a minute of fuzzing, then the contract")
+    step("all tests; beside them a minute of fuzzing and the contract under sanitizers, then the core as without AVX2")
     lab = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "lab").glob("*/tests"))]
     everything = processes.start(*tests(cores + 1, "tests", *lab))
-    with (ROOT / "build" / "sanitizers.out").open("w+", errors="replace") as file:  # printed when all tests have ended
-        beside = [processes.command("fuzz", 60), under_sanitizers()]
+    other_machine = tests(cores, *CORE, on=("bash", "tests/other_machine"))
+    with (ROOT / "build" / "beside.out").open("w+", errors="replace") as file:  # printed when all tests have ended
+        beside = [processes.command("fuzz", 60), under_sanitizers(), other_machine]
         codes = [processes.status(*words, stdout=file, stderr=STDOUT) for words in beside]
         codes.append(processes.ended(everything))
         file.seek(0)
-        print("\nUnder sanitizers:", file.read(), sep="\n", flush=True)
+        print("\nUnder sanitizers, then as without AVX2 and FMA:", file.read(), sep="\n", flush=True)
     if any(codes):
         raise processes.Failed(1)
-
-    step("the tests of the core as on a processor without AVX2 and FMA")
-    processes.check(*tests(cores, *CORE, on=("bash", "tests/other_machine")))
 
     step("done")
     print("All checks and tests passed.")

@@ -24,9 +24,9 @@ def error(library: Library, scene: Scene, tolerance: float | None = None, least:
     return max(kind_errors(got, want, least).values())
 
 
-def transitions_gap(library: Library, scene: Scene, s: float) -> float:
+def transitions_gap(library: Library, scene: Scene, s: float, tolerance: float | None = None) -> float:
     """Largest difference of the instants, s; infinite if the transitions differ."""
-    run = library.simulate([0.0, scene.duration], None, scene.inputs, **{**scene.start, "s": s})
+    run = library.simulate([0.0, scene.duration], tolerance, scene.inputs, **{**scene.start, "s": s})
     return instants_error(run.events, scene.solved().events[1:])
 
 
