@@ -105,6 +105,7 @@ def calls(library: Library) -> Iterator[Case]:
         ((1, 1e-5, inf, 1, 5.5), "start inf s: it must be finite."),
         ((1, 1e-5, START, 1, 5.5), f"stop 5.5 s: it must not lie before the start, {START} s."),
         ((1, -1e-5, START, 1, 8.5), "tolerance -1e-05: it must be positive."),
+        ((1, 0.0, START, 1, 8.5), "tolerance 0: it must be positive."),
     ):
         yield answer("SetupExperiment", *experiment), f"fmi2SetupExperiment: {text}"
     w.start(START, stop=8.5)
