@@ -190,9 +190,9 @@ def eigenvalues(v, of=ride, dt=0.04):
     return np.sort_complex(np.log(np.linalg.eigvals(y[:, 1:] @ np.linalg.pinv(y[:, :-1])).astype(complex)) / dt)
 
 
-def limits(low=SLOWEST, high=FASTEST):
+def limits():
     """Speeds at which the largest real part of the eigenvalues changes its sign, m/s."""
-    tried = np.arange(low, high + 0.5)  # 1 m/s apart
+    tried = np.arange(SLOWEST, FASTEST + 0.5)  # 1 m/s apart
     largest = [eigenvalues(v)[-1].real for v in tried]
     changes = [k for k in range(len(tried) - 1) if largest[k] * largest[k + 1] < 0]
     return [brentq(lambda v: eigenvalues(v)[-1].real, *tried[k : k + 2], xtol=1e-7) for k in changes]

@@ -6,7 +6,7 @@
 // Results depend on the arguments alone. Functions that decide write contact and mode in `in_force`, and the slip in y.
 //
 //                     writes                          called
-//   enforce           road, inputs, carrier's rates  at the start, at a step after something was set, for a reading
+//   enforce           road, inputs, carrier's rates   at the start, at a step after something was set, for a reading
 //   decide_contact    contact, mode, slip             by enforce, and where a slip ends
 //   decide_mode       mode                            by decide_contact, at events of the spin, in model exchange
 //   release           mode                            where resistance and brake cannot hold the wheel

@@ -77,36 +77,26 @@ def test_a_null_pointer_is_an_error_in_the_place_of_any_array_result_or_state(br
 def requests(w: FMU2Wheel) -> dict[str, tuple[list[Any], dict[int, int]]]:
     """Of each function that answers into memory of the caller's: arguments, with several entries where there are lists,
     and at the place of each answer its size in bytes."""
-    reals, choices, unknowns = (
-        w.refer("E", "F_X", "m", "tau"),
-        w.refer("n_steps", "method", "n_events"),
-        w.refer("tau", "E"),
-    )
-    knowns, rates, states, z = (
-        w.refer("M_1", "F_X"),
-        w.refer("phi", "lambda_x", "tau"),
-        8 * len(driver.STATES),
-        w.indicator_count,
-    )
     state, size = w.snapshot(), len(w.serialized())
-    found = {"GetReal": ([reals, 4, None], {2: 32}), "GetInteger": ([choices, 3, None], {2: 12})}
-    found |= {"GetBoolean": ([w.refer("guided", "keep_contact"), 2, None], {2: 8})}
-    found |= {"GetRealOutputDerivatives": ([rates, 3, [1, 1, 1], None], {3: 24})}
-    found |= {"GetDirectionalDerivative": ([unknowns, 2, knowns, 2, [1.0, 2.0], None], {5: 16})}
+    states, z = len(driver.STATES), w.indicator_count
+    unknowns, knowns = w.refer("tau", "E"), w.refer("M_1", "F_X")
     of_states = ("GetContinuousStates", "GetDerivatives", "GetNominalsOfContinuousStates")
-    found |= dict.fromkeys(of_states, ([None, len(driver.STATES)], {0: states})) | {
-        "GetEventIndicators": ([None, z], {0: 8 * z})
-    }
-    found |= {
+    return {
+        "GetReal": ([w.refer("E", "F_X", "m", "tau"), 4, None], {2: 32}),
+        "GetInteger": ([w.refer("n_steps", "method", "n_events"), 3, None], {2: 12}),
+        "GetBoolean": ([w.refer("guided", "keep_contact"), 2, None], {2: 8}),
+        "GetRealOutputDerivatives": ([w.refer("phi", "lambda_x", "tau"), 3, [1, 1, 1], None], {3: 24}),
+        "GetDirectionalDerivative": ([unknowns, 2, knowns, 2, [1.0, 2.0], None], {5: 16}),
+        **{function: ([None, states], {0: 8 * states}) for function in of_states},
+        "GetEventIndicators": ([None, z], {0: 8 * z}),
         "NewDiscreteStates": ([None], {0: sizeof(fmi2EventInfo)}),
         "CompletedIntegratorStep": ([1, None, None], {1: 4, 2: 4}),
-    }
-    found |= {"SerializeFMUstate": ([state, None, size], {1: size}), "SerializedFMUstateSize": ([state, None], {1: 8})}
-    found |= {
+        "SerializeFMUstate": ([state, None, size], {1: size}),
+        "SerializedFMUstateSize": ([state, None], {1: 8}),
         "GetStatus": ([driver.DO_STEP_STATUS, None], {1: 4}),
         "GetBooleanStatus": ([driver.TERMINATED, None], {1: 4}),
+        "GetRealStatus": ([driver.LAST_SUCCESSFUL_TIME, None], {1: 8}),
     }
-    return found | {"GetRealStatus": ([driver.LAST_SUCCESSFUL_TIME, None], {1: 8})}
 
 
 @each

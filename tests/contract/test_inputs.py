@@ -111,28 +111,15 @@ def test_reactions_answer_an_input_before_the_step_and_the_motion_does_not(wheel
 SET = {"F_X": 5.0, "F_Y": -4.0, "F_Z": -30.0, "M_1": 0.4, "M_2": -0.3, "M_3": 2.0, "M_brake": 3.0}
 ROAD_SET = {"s": 0.03, "mu_max": 0.35, "mu_slide": 0.25, "slope": 0.1, "slope_direction": 0.7}
 RATES = {"psi_dot_guide": 1 / 3, "theta_dot_guide": 1 / 7}
+TURNED = {"psi_dot_guide": 0.5, "theta_dot_guide": -0.2}
+STEERED = {"guided": True, "psi_dot_start": 0.0, "theta_dot_start": 0.0, "theta_start": 1.3, "s": 0.02} | RATES
+SLIDING = {"mu_max": 0.4, "mu_slide": 0.3, "slip_x_start": 1.0}
 PAIRED = {
     "rolls": ({"s": 0.02, "mu_max": 9.0}, SET | {"s": 0.03, "mu_max": 8.0, "slope": 0.1, "slope_direction": 0.7}),
     "held": ({**AT_REST, "s": 0.02}, SET | {"s": 0.03, "slope": 0.1, "slope_direction": 0.7}),
-    "slides": ({"mu_max": 0.4, "mu_slide": 0.3, "slip_x_start": 1.0, "slope": 0.05}, SET | ROAD_SET),
-    "steered": (
-        {"guided": True, "psi_dot_start": 0.0, "theta_dot_start": 0.0, "theta_start": 1.3, "s": 0.02} | RATES,
-        SET | {"psi_dot_guide": 0.5, "theta_dot_guide": -0.2, "s": 0.03},
-    ),
-    "steered, slides": (
-        {
-            "guided": True,
-            "psi_dot_start": 0.0,
-            "theta_dot_start": 0.0,
-            "theta_start": 1.3,
-            "s": 0.02,
-            "mu_max": 0.4,
-            "mu_slide": 0.3,
-            "slip_x_start": 1.0,
-        }
-        | RATES,
-        SET | ROAD_SET | {"psi_dot_guide": 0.5, "theta_dot_guide": -0.2},
-    ),
+    "slides": (SLIDING | {"slope": 0.05}, SET | ROAD_SET),
+    "steered": (STEERED, SET | TURNED | {"s": 0.03}),
+    "steered, slides": (STEERED | SLIDING, SET | ROAD_SET | TURNED),
 }
 
 
