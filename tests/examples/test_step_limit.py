@@ -37,7 +37,7 @@ SLIDING = {"wheel": Wheel(slides=True)}
 TWO = {name: Wheel() for name in ("left", "right")}
 AT_SPEED = 12.0  # m/s
 AXLES = {name: Wheel(guided=True, v=AT_SPEED, follows="yaw") for name in ("front", "rear")}
-STEPS, WINDOW = 250, 20
+STEPS, WINDOW, DIVERGED = 250, 20, 1e3
 BUSHING, SHAFT = (2e5, 4e3), (3e3, 40.0)
 
 
@@ -128,7 +128,8 @@ class Coupled:
 
 
 def grows(new: Callable[..., FMU2Wheel], coupling: tuple, h: float) -> bool:
-    """Whether the difference of two runs, in its largest signal, swings wider after many steps than after few."""
+    """Whether the difference of two runs, in its largest signal, swings wider after many steps than after few, or
+    has diverged before."""
     start, *rest = coupling
     runs = [Coupled(new, start, *rest, kick) for kick in (1e-4, 1.1e-4)]
     sizes = []
@@ -136,6 +137,8 @@ def grows(new: Callable[..., FMU2Wheel], coupling: tuple, h: float) -> bool:
         if False in [run.step(h) for run in runs]:
             return True
         sizes.append(float(np.abs(runs[1].state() - runs[0].state()).max()))
+        if sizes[-1] > DIVERGED * max(sizes[:WINDOW]):
+            return True
     free = min(sizes[-WINDOW:])  # a free motion of the whole stays
     return max(sizes[-WINDOW:]) - free > max(sizes[:WINDOW])
 
