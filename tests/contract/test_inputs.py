@@ -5,7 +5,7 @@ J_z + m (r_0 + r)^2, and F_X, F_Y, M_1, M_2 are balanced by nothing but the grou
 """
 
 from collections.abc import Callable
-from itertools import combinations
+from itertools import combinations, product
 from math import factorial
 
 import numpy as np
@@ -13,7 +13,7 @@ import pytest
 from support.bounds import EPSILON, absolute_error, beyond, within
 
 from wheelfmu.fmu.driver import DERIVATIVES, DISCARD, ERROR, OK, STATES, FMU2Wheel, shifted
-from wheelfmu.truth.scenes import AT_REST
+from wheelfmu.truth.scenes import AT_REST, PULLED
 
 RHO = 0.35
 INERTIA = 1.8 + 20 * RHO**2  # about the contact, kg m2
@@ -142,6 +142,27 @@ def test_any_two_values_act_alike_in_either_order_and_not_at_all_where_they_are_
         w.back(saved).put(**{name: values[name] for name in order})
         w.bits()  # a reading under way is not kept
         assert (w.put(**was).bits(), w.by(0.05).bits()) == (before, alone), pair
+
+
+STARTS = {
+    "unfolded": {"psi_dot_start": 0.3},
+    "guided": {"guided": True, "theta_start": 1.3, "psi_start": 0.0},
+    "pulled": {**PULLED, "s": 0.01},
+}
+
+
+@pytest.mark.parametrize("base", STARTS)
+def test_a_load_that_is_taken_back_before_the_first_step_was_never_set(wheel, base):
+    """Not for what is computed, counted or warned of: without a load a wheel is unfolded, and not told of its grip."""
+
+    def run(values: tuple[float, ...], name: str = "F_X") -> tuple[list[bytes], list[str]]:
+        w = wheel().give({name: values}).start(**STARTS[base])
+        return w.give({name: (0.0,)}).run([0.4, 0.8]), w.texts()
+
+    never, loaded = run((0.0,)), wheel().start(**STARTS[base], F_X=1e-6)
+    for name, order in product(SET, range(4)):
+        assert run((0.0,) * order + (SET[name],), name) == never, (name, order)
+    assert (loaded.run([0.4, 0.8]), loaded.texts()) != never  # the partner
 
 
 @pytest.mark.parametrize("base", ["steered", "steered, slides"])

@@ -16,7 +16,7 @@ from support.bounds import within
 from wheelfmu.fmu.driver import DISCARD, ERROR, LAST_SUCCESSFUL_TIME, OK, FMU2Wheel, Values
 from wheelfmu.truth.exchange import exchange
 from wheelfmu.truth.motion import Library
-from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER, SWINGS
+from wheelfmu.truth.scenes import AT_REST, GENERAL, PAPER, PULLED, SWINGS
 from wheelfmu.truth.sliding import ROAD, THROWN, gripping_torque
 
 WEIGHT = PAPER.m * PAPER.g
@@ -126,6 +126,14 @@ def test_the_grip_of_a_wheel_that_nothing_loads_is_never_warned_of(wheel):
     w, loaded = wheel().start(**steep).to(0.2), wheel().start(**steep, F_X=1e-6).to(0.2)
     assert w.get("mu_required")[0] > 1.3 and w.texts() == []
     assert GRIP in texts_of(loaded)  # the partner
+
+
+def test_a_warning_names_an_instant_of_the_step_that_logs_it(wheel):
+    """Under a constant load the solution is known far beyond it."""
+    w, named = wheel().start(**PULLED, s=0.01, F_X=1e-6), []
+    for _ in range(100):
+        named += [(w.time, float(text.split()[2]), w.time - 1e-3) for text in w.by(1e-3).texts()]
+    assert len(named) == 2 and all(reached >= t >= before for reached, t, before in named)
 
 
 UPRIGHT = "exactly upright"

@@ -79,6 +79,8 @@ def test_a_restored_instance_logs_its_faults_again(wheel):
         each.take_messages()
         each.get_one("tau")
     assert other.texts() == logged and not w.texts()  # the partner: once for each instance
+    for each in (w, other):  # the end of initialization names all faults, logged before or not
+        assert each.exitInitializationMode() == ERROR and each.texts() == logged
 
 
 def test_a_state_outlives_its_instance_and_is_freed_once(wheel):

@@ -127,3 +127,15 @@ def test_a_slip_that_passes_zero_where_the_road_cannot_hold_the_wheel_begins_ane
     beyond(-side * slip, 1, "slip to the other side, m/s")
     assert w.get("n_events") == [before + 1]
     assert w.said().endswith("the wheel slides in another direction.")
+
+
+@pytest.mark.parametrize("chi", np.linspace(0.1, 6.2, 9))
+def test_a_wheel_that_is_held_where_its_slip_ends_stays_held(wheel, chi) -> None:
+    """By a brake hardly stronger than the friction of a slip in that direction: along its heading, that of most would
+    turn it. Once it grips, no slip has any direction."""
+    slip = {"slip_x_start": np.cos(chi), "slip_y_start": np.sin(chi)}
+    brake = 0.25 * WEIGHT * 0.35 * (abs(np.cos(chi)) + 0.02)
+    w = wheel(logging=True).start(**UPRIGHT, **slip, guided=True, mu_max=0.3, mu_slide=0.25, M_brake=brake)
+    w.take_messages()
+    assert w.by(1.0).get("contact_mode", "friction_mode") == [0, 0]
+    assert w.said().endswith(": the wheel stops sliding.")  # alone: it has neither been let go nor held anew

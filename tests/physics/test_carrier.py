@@ -333,6 +333,17 @@ def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_
         assert modes == [mode, 1] and (omega_z == 0.0) == (mode == 0)
 
 
+def test_a_jump_lets_go_of_a_wheel_that_slides_once_the_road_turns_it_more_than_its_brake_can_hold(library) -> None:
+    """It slips across its heading at first, where the road does not turn it, and is steered: the later, the less."""
+    lean = {"guided": True, "psi_start": 0.0, "theta_start": 0.9, "phi_dot_start": 0.0, "keep_contact": True}
+    lean |= {"r": 0.2, "mu_max": 0.5, "mu_slide": 0.4, "slip_y_start": 2.0}
+    spins = []
+    for brake in (0.0, 30.0, 60.0, 300.0):
+        w = library.wheel().start(**lean).put(M_brake=brake)
+        spins += w.put(psi_dot_guide=3.0, theta_dot_guide=1.0).get("omega_z")
+    assert spins[0] > spins[1] > spins[2] > spins[3] == 0.0
+
+
 def test_rates_that_are_held_never_break_the_grip_and_their_derivatives_do(library: Library) -> None:
     """Leaned by 20 rad/s2, which needs a friction coefficient of 0.7, in steps of 0.1 to 10 ms."""
     for h in (1e-4, 1e-3, 1e-2):
