@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.building import probe
-from wheelfmu.truth.closed_forms import circle, critical_spin
+from wheelfmu.truth.closed_forms import circle, critical_spin, tipping_inertia
 from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.reference import Start, Wheel
 
@@ -107,7 +107,10 @@ def test_the_energy_is_kept_to_half_the_tolerance_wherever_it_is_read(library, t
 
 
 def test_in_whatever_order_its_instants_are_read_they_have_the_same_bits(library: ctypes.CDLL) -> None:
-    orbit, t = Orbit(library), np.linspace(0, 70, 500)
+    """Also within the rounding of the ends of halves."""
+    orbit = Orbit(library)
+    ends = orbit.half_period * np.arange(1, 200)
+    t = np.sort([*np.linspace(0, 125, 900), *np.nextafter(ends, 0), *ends, *np.nextafter(ends, np.inf)])
     order = np.random.default_rng(5).permutation(len(t))
     np.testing.assert_array_equal(orbit(t[order]), Orbit(library)(t)[order])
 
@@ -165,11 +168,14 @@ def test_where_a_period_turns_the_wheel_by_half_turns_it_walks_straight_on(libra
     within(beside[-1] / straight[-1], 0.003, "way of a wheel that circles over that way")
 
 
+@pytest.mark.parametrize("theta_dot", [0.0, 1e-17])
 @pytest.mark.parametrize("phi_dot", [-9.0, -1000.0])
-def test_straight_rolling_above_the_critical_speed_needs_no_step(library: ctypes.CDLL, phi_dot: float) -> None:
-    orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
+def test_straight_rolling_above_the_critical_speed_needs_no_step(library, phi_dot: float, theta_dot: float) -> None:
+    """A rate that is only rounding is none: theta stays."""
+    orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot, theta_dot=theta_dot))
     assert (orbit.kind, orbit.steps) == ("steady", 0)
     y = orbit([1e4])[0]
+    assert y[0] == np.pi / 2 and y[1] == 0
     want = Start().X_O, -phi_dot * 0.35 * 1e4  # rolls along Y
     within(abs(y[7] / want[1] - 1), 64 * EPSILON, "way, relative")
     within(abs(y[6] - want[0]) / abs(want[1]), 16 * EPSILON, "way across over that along")
@@ -180,6 +186,17 @@ def test_below_the_critical_speed_and_next_to_it_straight_rolling_is_not_taken_f
         orbit = Orbit(library, start=Start(theta=np.pi / 2, phi_dot=phi_dot))
         assert orbit.kind == "refused" or orbit.steps > 100  # a nutation that begins by rounding takes its time
     assert Orbit(library, start=Start(theta=np.pi / 2, phi_dot=0.0)).kind == "ended"  # it lies flat
+
+
+@pytest.mark.parametrize("wheel", [Wheel(), Wheel(r=0.0), Wheel(J_z=1.2, r=0.12)], ids=["paper", "disc", "fat"])
+def test_spinning_on_its_edge_is_steady_from_the_rate_on_at_which_a_wheel_falls_from_rest(
+    library, wheel: Wheel
+) -> None:
+    """About the vertical. A small lean has the stiffness psi_dot^2 - m g r_0 / (J_x + m R^2): omega_3 follows it."""
+    falling = (wheel.m * wheel.g * wheel.r_0 / tipping_inertia(wheel)) ** 0.5
+    for share in (0.99, 1.01):
+        start = Start(theta=np.pi / 2, psi_dot=share * falling, phi_dot=0.0)
+        assert (Orbit(library, wheel, start).kind == "steady") == (share > 1)
 
 
 @pytest.mark.parametrize("lean", [1e-13, 1e-10, 1e-8, 1e-4])

@@ -69,10 +69,12 @@ def test_a_step_that_is_lost_in_part_or_whole_in_the_rounding_of_time_is_refused
     assert status == OK or "the step is lost in the rounding of the time" in w.sentences[-1]
 
 
-def test_a_step_past_the_digits_of_the_angles_is_refused(wheel):
-    w = wheel().start().to(1e6)
+@pytest.mark.parametrize("angle", ["psi", "phi"])
+def test_a_step_past_the_digits_of_either_angle_is_refused(wheel, angle):
+    """An upright wheel on its edge, and one that rolls straight: 1e12 rad at 9 rad/s."""
+    w = wheel().start(theta_start=pi / 2, **{"phi_dot_start": 0.0, f"{angle}_dot_start": 9.0}).to(0.99e12 / 9)
     before = w.get("psi", "phi")
-    assert w.step(1e300) == ERROR
+    assert w.step(0.02e12 / 9) == ERROR
     assert "too few digits" in w.sentences[-1] and w.get("psi", "phi") == before
 
 
