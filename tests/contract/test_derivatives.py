@@ -290,6 +290,24 @@ def test_small_differences_of_large_terms_do_not_hide_a_derivative(wheel):
     within(abs(found + 0.35), 1e-11, "derivative of v_y, m")
 
 
+@pytest.mark.parametrize("size", [1e6, 1e12, -1e12])
+def test_under_a_load_of_any_size_the_derivatives_are_those_without(wheel, size):
+    """The reactions are linear in the loads."""
+    usual = jacobian(wheel().initializing(keep_contact=True))
+    for load in LOADS:
+        column = jacobian(wheel().initializing(keep_contact=True, **{load: size}), [load])[:, 0]
+        within(np.abs(column - usual[:, LOADS.index(load)]).max(), 1e-9, f"derivatives by {load} apart")
+
+
+def test_the_derivatives_by_a_start_next_to_zero_are_those_at_zero(wheel):
+    knowns = ("X_O_start", "Y_O_start", "psi_start", "phi_start", "psi_dot_start", "theta_dot_start", "slope_direction")
+    usual = {"slope": 0.1, "J_x": 0.7, "J_y": 1.2}
+    want, found = (
+        wheel().initializing(**usual | dict.fromkeys(knowns, x)).jacobian(ANSWERS, knowns) for x in (0, 1e-9)
+    )
+    within(np.abs(found - want).max() / np.abs(want).max(), 1e-7, "derivatives apart, relative")
+
+
 def test_rolling_resistance_alone_is_no_moment_of_the_brake(wheel):
     """tau_brake = tau M_brake / (M_brake + s N) is zero for each s where M_brake is."""
     w = wheel().initializing()

@@ -243,6 +243,16 @@ def test_a_step_that_ends_at_a_jump_of_a_varying_input_evaluates_nothing_beyond_
     assert (steps == 1).all() and (evaluations == 12).all()
 
 
+def test_a_step_is_a_little_longer_to_end_at_a_communication_point_and_one_cut_short_shortens_no_other(wheel):
+    """Of a load that goes on. No step is longer than 0.6 time scales, but by up to a hundredth."""
+    w = wheel().start(guided=True, psi_start=0.0, theta_start=np.pi / 2, phi_dot_start=-20.0)
+    longest, counts = 0.6 * (0.35 / 9.81) ** 0.5, []
+    for h in (*[1.005] * 8, 1e-3, 1.005, 1.005, 1.015):
+        w.give({"F_X": (5.0, 1.0)}, since=w.time).by(h * longest)
+        counts.append(w.get("n_steps")[0])
+    assert np.diff(counts)[5:].tolist() == [1, 1, 1, 1, 1, 2]
+
+
 @pytest.mark.parametrize("moments", [{"J_x": 0.7, "J_y": 1.2}, {"J_x": 0.9, "J_y": 0.9}], ids=["any J", "J_x = J_y"])
 def test_the_large_system_is_left_out_whatever_the_moments_of_inertia_are(counters, moments):
     automatic, reduced, multibody = (counters(**moments, s=0.03, formulation=k) for k in (1, 2, 3))

@@ -156,6 +156,20 @@ def test_a_spin_set_across_an_event_is_kept_and_the_law_follows_it(library: Libr
     check()
 
 
+@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize("torque", [0.0, -50.0], ids=["held", "driven away from zero"])
+def test_a_spin_off_its_side_by_a_thousandth_of_the_scale_of_rates_is_an_error_and_by_more_is_set(
+    library, torque, share
+):
+    """The scale is the power of two below sqrt(g / R)."""
+    with exchange(library, s=0.03, M_3=torque, **AT_REST) as wheel:
+        mode = wheel.get("friction_mode")
+        wheel.place(0.1, np.where(np.array(STATES) == "omega_z", 4e-3 * share, wheel.x()))
+        wheel.event()
+        kept = [wheel.x()[-1] == 0, wheel.get("friction_mode") == mode]
+        assert kept == [share < 1] * 2
+
+
 @pytest.mark.parametrize("h", [1e-3, 1e-2, 0.05])
 def test_a_spin_that_steps_without_a_search_lead_across_zero_still_stops(library: Library, h: float) -> None:
     """The partner: Euler's method. omega_z goes beyond zero by up to a step."""

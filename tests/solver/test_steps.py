@@ -118,6 +118,16 @@ def test_after_an_event_right_behind_the_start_of_a_step_a_thousandth_of_it_is_n
     within(one.now.known - one.now.begin, 1.01e-4, "step after the event, s")
 
 
+@pytest.mark.parametrize("longest_step", [1.0, 0.02])
+def test_the_error_of_the_next_step_is_foreseen_from_those_of_two(solver, longest_step):
+    """y = 1 / (1 - t): the steps become ever shorter, and none is refused."""
+    one = solver("runge_kutta", "explosive", longest_step=longest_step)
+    one.run(inf, 6)
+    before = one.now
+    one.run(0.99)
+    assert one.now.rhs - before.rhs == 12 * (one.now.steps - before.steps)
+
+
 @pytest.mark.parametrize("problem", ["explosive", "ending"])
 def test_a_solution_that_cannot_go_on_fails_with_a_sentence_where_it_ends(solver, method, problem):
     one = solver(method, problem)
