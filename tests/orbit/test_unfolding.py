@@ -227,6 +227,23 @@ def test_what_is_taken_for_steady_swings_by_a_thousandth_of_the_tolerance(librar
     beyond(most / tolerance, 1e-4, "swing of what is almost not taken for steady, tolerances")
 
 
+@pytest.mark.parametrize(("theta", "psi_dot"), [(0.1, 10.0), (0.35, 10.0), (1.0, -40.0)])
+def test_on_a_steady_circle_the_wheel_is_a_diameter_away_after_half_a_turn_and_back_after_a_whole_one(
+    library: ctypes.CDLL, theta: float, psi_dot: float
+) -> None:
+    wheel = Wheel()
+    start = circle(wheel, theta, psi_dot)
+    orbit = Orbit(library, start=start)
+    assert orbit.kind == "steady"
+    omega_3 = start.phi_dot + psi_dot * np.cos(theta)
+    v = wheel.r * np.cos(theta) * psi_dot * np.sin(theta) - (wheel.r_0 + wheel.r * np.sin(theta)) * omega_3
+    turns = np.array([0, 0.5, 1, 1000, 1000.5])
+    away = np.hypot(*(orbit(2 * np.pi / abs(psi_dot) * turns)[:, 6:] - [start.X_O, start.Y_O]).T)
+    diameter = 2 * abs(v / psi_dot)
+    within(np.abs(away / diameter - turns % 1 * 2).max(), 1e-11, "distance from the start over the diameter")
+    beyond(diameter, 0.02, "diameter, m")
+
+
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
 def test_a_long_nutation_beside_an_unstable_rest_folds(library: ctypes.CDLL, off: float) -> None:
     start = Start(theta=np.pi / 2 + off, phi_dot=-2.5)

@@ -323,6 +323,20 @@ def test_a_jump_that_relieves_the_ground_takes_nothing_from_the_brake_that_holds
     beyond(spins[1], 5e-3, "spin after the same jump under a brake of 2 N m, rad/s")
 
 
+@pytest.mark.parametrize(("theta", "psi_dot", "theta_dot"), [(pi / 2, 0.8, 0.5), (1.1, 0.8, 0.0), (2.1, -0.8, 0.0)])
+def test_a_jump_that_presses_nothing_on_the_ground_turns_the_contact_of_a_wheel_that_slides_about_its_center(
+    library: Library, theta: float, psi_dot: float, theta_dot: float
+) -> None:
+    """Without friction in the jump v_O stays; the contact lies R below O, and r cos(theta) along the axle."""
+    slides = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 3.0, "slip_y_start": -1.0}
+    w = library.wheel().start(**{**UPRIGHT, **slides, "guided": True, "theta_start": theta})
+    before = np.array(w.get("slip_x", "slip_y", "X_O_dot", "Y_O_dot"))
+    after = w.put(psi_dot_guide=psi_dot, theta_dot_guide=theta_dot).get("slip_x", "slip_y", "X_O_dot", "Y_O_dot")
+    turned = [-TUBE * cos(theta) * psi_dot * sin(theta), (R_0 * sin(theta) + TUBE) * theta_dot, 0, 0]
+    within(np.abs(after - before - turned).max(), 1e-14, "speeds apart, m/s")
+    beyond(np.abs(turned).max(), 1e-2, "change of the slip, m/s")
+
+
 @pytest.mark.parametrize("slip", [1.0, -1.0])
 def test_friction_of_a_jump_stops_the_spin_of_a_wheel_that_slides_to_the_bit_or_leaves_its_side(library, slip) -> None:
     """Across its heading, so that the road hardly turns it: the pressure of the swing takes some 0.07 rad/s."""
