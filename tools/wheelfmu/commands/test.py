@@ -52,19 +52,19 @@ def main(given: Namespace) -> None:
         processes.check(*tests(cores, *(CORE if given.which == "quick" else PRODUCT)))
         print(f"The tests passed in {elapsed():.0f} s; ./scripts/test all runs every check.")
         return
-    step("formatting and lint; builds, warnings are errors: release, sanitizers with the fuzzer; clang-tidy")
-    processes.side_by_side(RELEASE, *(processes.command(*words) for words in (("build", "asan"), ("tidy",), ("lint",))))
+    step("formatting and lint; the release build, warnings are errors")
+    processes.side_by_side(RELEASE, processes.command("lint"))
 
-    step("all tests; beside them a minute of fuzzing and the contract under sanitizers, then the core as without AVX2")
+    step("all tests; beside them fuzzing, the contract under sanitizers, clang-tidy, the core as without AVX2 and FMA")
     lab = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "lab").glob("*/tests"))]
     everything = processes.start(*tests(cores + 1, "tests", *lab))
     other_machine = tests(cores, *CORE, on=("bash", "tests/other_machine"))
     with (ROOT / "build" / "beside.out").open("w+", errors="replace") as file:  # printed when all tests have ended
-        beside = [processes.command("fuzz", 60), under_sanitizers(), other_machine]
+        beside = [processes.command("fuzz", 60), under_sanitizers(), processes.command("tidy"), other_machine]
         codes = [processes.status(*words, stdout=file, stderr=STDOUT) for words in beside]
         codes.append(processes.ended(everything))
         file.seek(0)
-        print("\nUnder sanitizers, then as without AVX2 and FMA:", file.read(), sep="\n", flush=True)
+        print("\nUnder sanitizers, by clang-tidy, as without AVX2 and FMA:", file.read(), sep="\n", flush=True)
     if any(codes):
         raise processes.Failed(1)
 
