@@ -153,7 +153,7 @@ STARTS = {
 
 @pytest.mark.parametrize("base", STARTS)
 def test_a_load_that_is_taken_back_before_the_first_step_was_never_set(wheel, base):
-    """Not for what is computed, counted or warned of: without a load a wheel is unfolded, and not told of its grip."""
+    """Not for what is computed, counted or warned of: without a load a wheel is unfolded and its grip not looked at."""
 
     def run(values: tuple[float, ...], name: str = "F_X") -> tuple[list[bytes], list[str]]:
         w = wheel().give({name: values}).start(**STARTS[base])

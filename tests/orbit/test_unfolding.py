@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from support.bounds import EPSILON, beyond, within
 
 from wheelfmu.fmu.building import probe
-from wheelfmu.truth.closed_forms import circle, critical_spin, tipping_inertia
+from wheelfmu.truth.closed_forms import circle, circle_speed, critical_spin, tipping_inertia
 from wheelfmu.truth.errors import over_range
 from wheelfmu.truth.reference import Start, Wheel
 
@@ -235,11 +235,9 @@ def test_on_a_steady_circle_the_wheel_is_a_diameter_away_after_half_a_turn_and_b
     start = circle(wheel, theta, psi_dot)
     orbit = Orbit(library, start=start)
     assert orbit.kind == "steady"
-    omega_3 = start.phi_dot + psi_dot * np.cos(theta)
-    v = wheel.r * np.cos(theta) * psi_dot * np.sin(theta) - (wheel.r_0 + wheel.r * np.sin(theta)) * omega_3
     turns = np.array([0, 0.5, 1, 1000, 1000.5])
     away = np.hypot(*(orbit(2 * np.pi / abs(psi_dot) * turns)[:, 6:] - [start.X_O, start.Y_O]).T)
-    diameter = 2 * abs(v / psi_dot)
+    diameter = 2 * abs(circle_speed(wheel, theta, psi_dot) / psi_dot)
     within(np.abs(away / diameter - turns % 1 * 2).max(), 1e-11, "distance from the start over the diameter")
     beyond(diameter, 0.02, "diameter, m")
 

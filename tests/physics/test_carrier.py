@@ -330,8 +330,9 @@ def test_a_jump_that_presses_nothing_on_the_ground_turns_the_contact_of_a_wheel_
     """Without friction in the jump v_O stays; the contact lies R below O, and r cos(theta) along the axle."""
     slides = {"mu_max": 0.3, "mu_slide": 0.25, "slip_x_start": 3.0, "slip_y_start": -1.0}
     w = library.wheel().start(**{**UPRIGHT, **slides, "guided": True, "theta_start": theta})
-    before = np.array(w.get("slip_x", "slip_y", "X_O_dot", "Y_O_dot"))
-    after = w.put(psi_dot_guide=psi_dot, theta_dot_guide=theta_dot).get("slip_x", "slip_y", "X_O_dot", "Y_O_dot")
+    speeds = ("slip_x", "slip_y", "X_O_dot", "Y_O_dot")
+    before = np.array(w.get(*speeds))
+    after = w.put(psi_dot_guide=psi_dot, theta_dot_guide=theta_dot).get(*speeds)
     turned = [-TUBE * cos(theta) * psi_dot * sin(theta), (R_0 * sin(theta) + TUBE) * theta_dot, 0, 0]
     within(np.abs(after - before - turned).max(), 1e-14, "speeds apart, m/s")
     beyond(np.abs(turned).max(), 1e-2, "change of the slip, m/s")

@@ -78,6 +78,12 @@ def circle_spin(wheel: Wheel, theta: float, psi_dot: float) -> float:
     return (turning - wheel.m * wheel.g * wheel.r_0 * c) / ((wheel.J_z * s + wheel.m * rho * Z) * psi_dot)
 
 
+def circle_speed(wheel: Wheel, theta: float, psi_dot: float) -> float:
+    """v of O along e1 on the steady circle, as in circle_spin."""
+    s, c = np.sin(theta), np.cos(theta)
+    return wheel.r * c * psi_dot * s - (wheel.r_0 + wheel.r * s) * circle_spin(wheel, theta, psi_dot)
+
+
 def circle(wheel: Wheel, theta: float, psi_dot: float) -> Start:
     """The start of the steady circle."""
     return Start(theta=theta, psi_dot=psi_dot, phi_dot=circle_spin(wheel, theta, psi_dot) - psi_dot * cos(theta))

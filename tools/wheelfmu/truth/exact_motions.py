@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 from wheelfmu.truth.closed_forms import (
     circle,
+    circle_speed,
     circle_spin,
     critical_spin,
     fall_normal_force,
@@ -62,9 +63,11 @@ def circle_error(library: Library, disc: Wheel, judged: Wheel, formulation: int,
     omega_z, times = circle_spin(judged, theta, psi_dot), np.linspace(0, 5, 101)
     start = start_values(disc, circle(judged, theta, psi_dot))
     run = library.simulate(times, 1e-11, formulation=formulation, **start)
-    speed = np.hypot(run["X_O_dot"], run["Y_O_dot"])
-    wander = [run["theta"] - theta, run["psi_dot"] - psi_dot, run["omega_z"] - omega_z, speed - speed[0]]
+    speed = abs(circle_speed(judged, theta, psi_dot))
+    v, place = (run[f"X_O{dot}"] + 1j * run[f"Y_O{dot}"] for dot in ("_dot", ""))
+    wander = [run["theta"] - theta, run["psi_dot"] - psi_dot, run["omega_z"] - omega_z, np.abs(v) - speed]
     wander.append(run["psi"] - run["psi"][0] - psi_dot * times)
+    wander.append(place - place[0] - v[0] * np.expm1(1j * psi_dot * times) / (1j * psi_dot))
     return float(np.abs(wander).max())
 
 
